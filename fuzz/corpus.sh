@@ -20,3 +20,5 @@ for target in parser layout meaning; do
     cat specs/machines/hobbing_6axis.chain specs/tools/involute.chain specs/tools/hob_zi.chain specs/hobbing/helical_gear.chain |
         grep -v '^use ' > "fuzz/corpus/$target/whole-helical-gear"
 done
+mkdir -p fuzz/corpus/lsp
+cp tests/language/conversations/*.lsp fuzz/corpus/lsp/

@@ -67,3 +67,48 @@ def test_matlab_names_what_there_is():
     known = {name for kind in vars(flank).values() if isinstance(kind, type) for name in dir(kind)}
     methods = set(re.findall(r"\b(?:job|other|points|concave|e|grid|found|fit|motion|contact|pair|picture)\.(\w+)", page))
     assert methods <= known, methods - known
+
+
+def _as_python(line):
+    """A line of MATLAB as Python: cells are lists, pairs of `pyargs` are keywords, arrays of numpy stay what they are."""
+    for cell, listed in ("{", "["), ("}", "]"):
+        line = line.replace(cell, listed)
+    line = re.sub(r'pyargs\((.*?)\)(?=\))', r"**dict(pairs(\1))", line)
+    line = re.sub(r"@\((.*?)\)", r"lambda \1:", re.sub(r"\bfrom\b", "of", line))
+    return re.sub(r"\btrue\b", "True", line)
+
+
+def test_the_calls_from_matlab_run(tmp_path, monkeypatch):
+    """The ten jobs of the page for MATLAB, line by line, with what MATLAB itself does left out."""
+    import operator
+
+    import numpy as np
+
+    import flank
+
+    page = (ROOT / "docs/matlab.md").read_text().split("## Through files")[0]
+    block = next(block for block in re.findall(r"```matlab\n(.*?)```", page, re.DOTALL) if "py.flank.load" in block)
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "specs").symlink_to(ROOT / "specs")
+
+    class Python:
+        pass
+
+    py = Python()
+    py.flank, py.operator, py.dict = flank, operator, dict
+    pairs = lambda *of: zip(of[::2], of[1::2])
+    scope = {"py": py, "pairs": pairs, "int32": int, "double": lambda of: np.asarray(of, float), "logical": np.asarray, "string": str}
+    calls = 0
+    for line in block.splitlines():
+        line = line.strip().rstrip(";")
+        if not line or line.startswith(("%", "surf(", "column =", "T = table", "contourf(")):
+            continue
+        if "measured.csv" in line:
+            made = scope["job"].with_values({"m.radial_distance": "98.02 mm"})
+            made.measuring_grid("concave", 5, 9).write("measured.csv")
+        exec(_as_python(line), scope)
+        calls += 1
+    assert calls > 20
+    assert scope["xyz"].shape == (15, 31, 3) and scope["solved"].all()
+    assert scope["axes_of_machine"].shape == (101, 6) and scope["program"].startswith("%")
+    assert (tmp_path / "section.svg").is_file() and (tmp_path / "out/pinion_19x62.step").is_file()

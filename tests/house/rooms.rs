@@ -7,7 +7,7 @@ use flank_tests::repository;
 /// All that the library `flank` stands on, and itself.
 const BELOW: [&str; 6] = ["expr", "chain-dsl", "solver", "export", "draw", "flank"];
 
-/// Lines of the command line at the most, and of the protocol of editors beside it.
+/// Lines of the command line and the page that it serves at the most, and of the protocol of editors beside it.
 const MOST_LINES: [usize; 2] = [4500, 2200];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
@@ -83,7 +83,7 @@ fn rooms_use_only_those_before_them() {
 
 #[test]
 fn a_crate_shows_at_most_a_dozen_entries() {
-    for folder in BELOW.iter().chain(&["cli"]) {
+    for folder in BELOW.iter().chain(&["cli", "lsp"]) {
         let entries = std::fs::read_dir(repository(&format!("crates/{folder}/src"))).expect("a folder").count();
         assert!(entries <= MOST_ENTRIES, "{folder}: {entries}");
     }
@@ -121,14 +121,17 @@ fn no_public_function_returns_words_as_an_error() {
 
 #[test]
 fn the_command_line_is_thin() {
-    let manifest = text(&repository("crates/cli/Cargo.toml"));
-    let dependencies = manifest.split("[dev-dependencies]").next().expect("a part at least");
-    for package in ["flank-expr", "flank-solver", "flank-chain-dsl", "flank-draw"] {
-        assert!(!dependencies.contains(package), "the command line depends on {package}");
+    for shell in ["cli", "lsp"] {
+        let manifest = text(&repository(&format!("crates/{shell}/Cargo.toml")));
+        let dependencies = manifest.split("[dev-dependencies]").next().expect("a part at least");
+        for package in ["flank-expr", "flank-solver", "flank-chain-dsl", "flank-draw"] {
+            assert!(!dependencies.contains(package), "{shell} depends on {package}");
+        }
     }
-    let of_editors = repository("crates/cli/src/commands/lsp");
-    let (protocol, others): (Vec<PathBuf>, Vec<PathBuf>) =
-        sources(&repository("crates/cli/src")).into_iter().partition(|path| path.starts_with(&of_editors));
+    let page = repository("crates/lsp/src/live");
+    let (page, protocol): (Vec<PathBuf>, Vec<PathBuf>) =
+        sources(&repository("crates/lsp/src")).into_iter().partition(|path| path.starts_with(&page));
+    let others = [sources(&repository("crates/cli/src")), page].concat();
     for (paths, most) in [(others, MOST_LINES[0]), (protocol, MOST_LINES[1])] {
         let lines: usize = paths.iter().map(|path| text(path).lines().count()).sum();
         assert!(lines <= most, "{lines} lines, {most} at the most");
@@ -179,7 +182,7 @@ fn module(root: &Path, path: &Path) -> String {
 /// Files that need each other in a circle cannot be read one by one.
 #[test]
 fn no_files_use_each_other_in_a_circle() {
-    for folder in ["flank", "cli"] {
+    for folder in ["flank", "cli", "lsp"] {
         let root = repository(&format!("crates/{folder}/src"));
         let files = sources(&root);
         let modules: Vec<String> = files.iter().map(|path| module(&root, path)).collect();

@@ -1,13 +1,19 @@
 //! What the fuzzers do, for a few seconds and without a fuzzing engine: the inputs that they once found, hostile inputs, and
 //! the same random mutations in every run.
 
+#[path = "../src/conversation.rs"]
+#[expect(unreachable_pub, reason = "the fuzzers call it from elsewhere")]
+mod conversation;
+
 use std::path::PathBuf;
 
+use conversation::fuzz_lsp;
 use flank_tests::targets::{fuzz_layout, fuzz_meaning, fuzz_parser};
 use flank_tests::{Dice, repository};
 
-/// Mutated inputs for each target.
+/// Mutated inputs for each target, and conversations: each has threads of its own.
 const ROUNDS: usize = 3_000;
+const CONVERSATIONS: usize = 1_000;
 
 fn files(folder: &str, extensions: &[&str]) -> Vec<PathBuf> {
     let mut found = Vec::new();
@@ -68,10 +74,9 @@ fn mutated(input: &[u8], other: &[u8], dice: &mut Dice) -> Vec<u8> {
     bytes
 }
 
-fn storm(target: fn(&[u8]), seed: u64) {
-    let seeds = seeds();
+fn storm(target: fn(&[u8]), (seeds, rounds): (&[Vec<u8>], usize), seed: u64) {
     let mut dice = Dice(seed);
-    for _ in 0..ROUNDS {
+    for _ in 0..rounds {
         let (input, other) = (&seeds[dice.roll(seeds.len())], &seeds[dice.roll(seeds.len())]);
         let input = mutated(input, other, &mut dice);
         let told = std::panic::catch_unwind(|| target(&input));
@@ -92,15 +97,23 @@ fn inputs_found_before() {
 
 #[test]
 fn parser() {
-    storm(fuzz_parser, 1);
+    storm(fuzz_parser, (&seeds(), ROUNDS), 1);
 }
 
 #[test]
 fn layout() {
-    storm(fuzz_layout, 3);
+    storm(fuzz_layout, (&seeds(), ROUNDS), 3);
 }
 
 #[test]
 fn meaning() {
-    storm(fuzz_meaning, 2);
+    storm(fuzz_meaning, (&seeds(), ROUNDS), 2);
+}
+
+#[test]
+fn lsp() {
+    let seeds = contents(files("tests/language/conversations", &["lsp"]));
+    assert!(seeds.len() > 2, "{}", seeds.len());
+    seeds.iter().for_each(|conversation| fuzz_lsp(conversation));
+    storm(fuzz_lsp, (&seeds, CONVERSATIONS), 4);
 }

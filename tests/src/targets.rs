@@ -48,7 +48,8 @@ pub fn fuzz_layout(data: &[u8]) {
 
 fn places_lie_in(text: &str, diagnostics: &[Diagnostic]) {
     for diagnostic in diagnostics {
-        let places = diagnostic.notes.iter().map(|note| note.span).chain([diagnostic.span]);
+        let notes = diagnostic.notes.iter().map(|note| note.span);
+        let places = notes.chain(diagnostic.cures.iter().map(|cure| cure.span)).chain([diagnostic.span]);
         for Span { start, end, .. } in places {
             let (start, end) = (start as usize, end as usize);
             assert!(text.get(start..end).is_some(), "{start}..{end} is no part of the text: {diagnostic:?}");

@@ -324,7 +324,8 @@ fn the_loop_closes_in_two_rounds() {
             let values: Vec<f64> = (0..HIDDEN.len()).map(of).collect();
             whole
                 .surface
-                .feet(&values, &places, &near)
+                .at(&values)
+                .feet(&places, &near)
                 .into_iter()
                 .map(|foot| foot.expect("it is near").position)
                 .collect()

@@ -4,7 +4,7 @@ use flank_expr::{Expr, Graph};
 use flank_solver::{BoundSurface, Outcome, Range, SurfaceFamily, SurfacePoint};
 use flank_tests::{difference, followed, jobs, problem, shipped};
 
-/// Cases of each job, and of those whose studies are usual.
+/// Cases of each job, unless `FAMILY_CASES` says how many, and of those whose studies are usual.
 const CASES: u64 = 3;
 const MANY: u64 = 1000;
 const USUAL: [&str; 2] = ["specs/bevel/pinion_19x62.chain", "specs/hobbing/helical_gear.chain"];
@@ -38,6 +38,7 @@ fn kind(point: &SurfacePoint) -> &'static str {
 fn families_are_the_surfaces_derived_anew() {
     let (mut surfaces, mut points, mut followed_cases) = (0, 0, 0);
     let mut farthest = (0.0, String::new());
+    let cases = std::env::var("FAMILY_CASES").map_or(CASES, |cases| cases.parse().expect("a number of cases"));
     for spec in shipped() {
         let graph = Graph::new();
         for job in jobs(&graph, &spec, &[]) {
@@ -77,7 +78,7 @@ fn families_are_the_surfaces_derived_anew() {
                 let nominal = nominal.solve(&targets, counts).0;
                 let start = &nominal[(counts[0] / 2) * counts[1] + counts[1] / 2];
                 surfaces += 1;
-                for case in 0..if USUAL.contains(&spec.as_str()) { MANY } else { CASES } {
+                for case in 0..if USUAL.contains(&spec.as_str()) { MANY } else { cases } {
                     let values: Vec<f64> = settings
                         .iter()
                         .enumerate()

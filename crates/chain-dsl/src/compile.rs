@@ -211,7 +211,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
     context.tables.tell(&mut sources);
     let failed = context.has_errors();
     let mut diagnostics: Vec<Diagnostic> =
-        context.finish().into_iter().map(|diagnostic| diagnostic.with_unit(&sources)).collect();
+        context.finish().into_iter().map(|diagnostic| diagnostic.written_out(&sources)).collect();
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span.file, diagnostic.span.start));
     let (jobs, machine, machines) = if failed { Default::default() } else { (jobs, machine, machines) };
     let known_jobs = items.jobs.into_iter().filter(|item| Some(item.file) == main).map(|item| item.job.name.node);

@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use arguments::{Arguments, Command};
-use commands::{check, explain, fmt, import, lsp, new, operations, schema, shell, sweep, test};
+use commands::{check, editor, explain, fmt, import, new, operations, schema, shell, sweep, test};
 use console::{eprint, print};
 use failure::Failure;
 
@@ -99,7 +99,7 @@ fn run(command: &Command) -> Result<Ending, Failure> {
         Command::Import(arguments) => import::run(arguments),
         Command::Fmt(arguments) => Ok(fmt::run(arguments)),
         Command::View(arguments) => operations::view(arguments),
-        Command::Lsp(_) => lsp::run(),
+        Command::Lsp(_) => editor::lsp(),
         Command::New(arguments) => new::run(arguments),
         Command::Schema(arguments) => schema::run(arguments),
         Command::Completions(arguments) => Ok(shell::completions(arguments)),

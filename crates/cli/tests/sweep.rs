@@ -307,7 +307,8 @@ fn widths_and_curvatures_are_those_of_other_commands() {
     }
 }
 
-/// A linear propagation of tolerances and a study of normal scatter say the same, within three standard errors of the study.
+/// A linear propagation of tolerances and a study of normal scatter say the same, within three standard errors of the study, of which
+/// `STUDY_CASES` gives the number of cases.
 #[test]
 fn tolerances_and_studies_agree() {
     let folder = folder();
@@ -340,6 +341,7 @@ fn tolerances_and_studies_agree() {
                 assert!(off.abs() < 3.0, "{name}: {found} and {linear}, {off} standard errors");
             }
         };
+    let cases = std::env::var("STUDY_CASES").map_or(400.0, |cases| cases.parse().expect("a number of cases"));
     let settings = [("m.radial_distance", "5um"), ("m.machine_root_angle", "20arcsec"), ("m.ratio_of_roll", "0.01%")];
     let ease_off = [
         ["slope_profilewise", "slope_rows [um]", "1"],
@@ -348,11 +350,11 @@ fn tolerances_and_studies_agree() {
         ["crowning_lengthwise", "crowning_columns [um]", "1"],
         ["bias", "bias [um]", "1"],
     ];
-    agree(PINION, "concave", &settings, 400.0, ("ease_off:concave", &ease_off));
+    agree(PINION, "concave", &settings, cases, ("ease_off:concave", &ease_off));
     let settings = [("m.E", "10um"), ("m.S", "20arcsec"), ("p.radial_distance", "5um")];
     // degrees in urad
     let contact = [["drive_side.error", "lag [deg]", "17453.292519943295"]];
-    agree(PAIR, "pinion_concave", &settings, 100.0, ("contact:drive_side", &contact));
+    agree(PAIR, "pinion_concave", &settings, 0.25 * cases, ("contact:drive_side", &contact));
 }
 
 /// The same case has the same hash however it is written, and the same study is gone on with.
@@ -575,6 +577,63 @@ fn what_does_not_go_together_is_refused() {
     assert!(text(&run.stderr).contains("was made by flank 9.9.9"), "{}", text(&run.stderr));
     let run = flank(&["sweep", "run", &folder.path().join("nothing").display().to_string()]);
     assert!(text(&run.stderr).contains("is no study"), "{}", text(&run.stderr));
+}
+
+/// A disk of so many bytes at a folder; nothing where it cannot be mounted.
+#[cfg(target_os = "linux")]
+struct Disk(std::path::PathBuf);
+
+#[cfg(target_os = "linux")]
+impl Disk {
+    fn new(at: std::path::PathBuf, size: &str) -> Option<Disk> {
+        std::fs::create_dir_all(&at).expect("a folder");
+        let mounted = Command::new("mount").args(["-t", "tmpfs", "-o", size, "none"]).arg(&at).output();
+        mounted.is_ok_and(|run| run.status.success()).then_some(Disk(at))
+    }
+
+    fn resize(&self, size: &str) {
+        let run = Command::new("mount").args(["-o", &format!("remount,{size}")]).arg(&self.0).status();
+        assert!(run.expect("it was mounted").success());
+    }
+}
+
+#[cfg(target_os = "linux")]
+impl Drop for Disk {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg(&self.0).status();
+    }
+}
+
+/// What fits stays whole, what does not is told, and the study goes on once there is room.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_full_disk_loses_no_case() {
+    let folder = folder();
+    let Some(disk) = Disk::new(folder.path().join("disk"), "size=1m") else {
+        eprintln!("skipped 1 test: no disk can be mounted, which takes root");
+        return;
+    };
+    let (full, whole) = (disk.0.join("a").display().to_string(), study(&folder, "whole"));
+    let swept = |out: &str| {
+        let vary = ["--vary", "m.radial_distance=97.9mm..98.1mm by 8"];
+        flank(&[&["sweep", PINION, "--collect", "points", "--keep", "points", "--out", out], &vary[..]].concat())
+    };
+    let run = swept(&full);
+    assert_eq!(run.status.code(), Some(1), "{}{}", text(&run.stdout), text(&run.stderr));
+    assert!(text(&run.stderr).contains("the disk is full"), "{}", text(&run.stderr));
+    disk.resize("size=32m");
+    let run = flank(&["sweep", "run", &full]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert_eq!(swept(&whole).status.code(), Some(0));
+    assert_eq!(gathered(&full), gathered(&whole));
+    let kept = |study: &str| -> std::collections::BTreeMap<std::ffi::OsString, Vec<u8>> {
+        let files = std::fs::read_dir(Path::new(study).join("points")).expect("points");
+        files
+            .map(|file| file.expect("a file"))
+            .map(|file| (file.file_name(), std::fs::read(file.path()).expect("its bytes")))
+            .collect()
+    };
+    assert!(kept(&full) == kept(&whole) && kept(&full).len() == 8, "{:?}", kept(&full).keys());
 }
 
 /// Every command of the page about studies, in its order; blocks of commands have a folder each. Cases are fewer than on the page.

@@ -8,6 +8,7 @@ use flank_expr::Expr;
 use crate::definitions::profile;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::{Parameter, RangedVariable, ValueSource};
 use crate::syntax::ast::{Argument, Dimension, Expression, Param};
@@ -186,17 +187,17 @@ impl<'a, 'g> Binder<'a, 'g> {
     /// The profile that a parameter is set to; nothing if something is wrong (and reported).
     fn profile(&mut self, context: &mut Context<'g>, param: &Param) -> Option<Rc<Profile<'g>>> {
         let name = &param.name;
-        if let Some(place) = param
-            .default
-            .as_ref()
-            .or(param.step.as_ref())
-            .map(|value| value.span)
-            .or(param.range.as_ref().map(|range| range.span))
-        {
+        let values = param.default.iter().chain(&param.step).map(|value| value.span);
+        let places: Vec<Span> = values.chain(param.range.as_ref().map(|range| range.span)).collect();
+        if let Some(&place) = places.first() {
             let message =
                 format!("{} is a profile: it has no range, no step, and no value by default", shown_name(param));
-            let help = format!("write `param {} : profile`; the job gives the profile", name.node);
-            context.report(Diagnostic::new(Code::WrongKind, place, message).help(help));
+            let written = format!("param {} : profile", name.node);
+            let end = places.iter().map(|place| place.end).fold(place.end, u32::max);
+            let behind = Span { start: param.dimension.span.end, end, ..place };
+            let valued = Diagnostic::new(Code::WrongKind, place, message)
+                .help(format!("write `{written}`; the job gives the profile"));
+            context.report(valued.cure(format!("write `{written}`"), behind, ""));
             return None;
         }
         let job = match self.source {
@@ -276,9 +277,11 @@ impl<'a, 'g> Binder<'a, 'g> {
                     "{what} is a count, and {value} is below 0: without a range of its own a count starts from 0"
                 );
                 let name = &param.name.node;
-                let help =
-                    format!("if it may be negative, give it a range: `param {name} : count in {value} .. {}`", -value);
-                context.report(Diagnostic::new(Code::WrongDimension, span, message).help(help));
+                let range = format!("in {value} .. {}", -value);
+                let help = format!("if it may be negative, give it a range: `param {name} : count {range}`");
+                let behind = Span { start: param.dimension.span.end, ..param.dimension.span };
+                let negative = Diagnostic::new(Code::WrongDimension, span, message).help(help);
+                context.report(negative.cure(format!("write `count {range}`"), behind, format!(" {range}")));
                 return Err(Refused);
             }
             return Ok(None);
@@ -340,7 +343,8 @@ fn checked_step<'g>(
     let (what, span) = (format!("the step of {}", shown_name(param)), step.span);
     if is_count(&param.dimension) {
         let message = format!("{} is a count: it goes in whole steps, and has no step of its own", shown_name(param));
-        context.report(Diagnostic::new(Code::WrongDimension, span, message).help("leave the step out"));
+        let step = Diagnostic::new(Code::WrongDimension, span, message).help("leave the step out");
+        context.report(step.rewriting(Rewriting::Without("step", span)));
         return Err(Refused);
     }
     let value = context.evaluate(step, scope);

@@ -12,6 +12,7 @@ use crate::definitions::requirement;
 use crate::definitions::transforms;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Frame, NcWord, Parameter, RangedVariable};
@@ -389,7 +390,9 @@ impl<'a> Flat<'a> {
             {
                 let message = format!("{what} is fixed and must stand still, but depends on {name}");
                 let help = format!("an axis that follows another one is coupled: `couple {} = …`", target.node);
-                context.report(Diagnostic::new(Code::NotConstant, law.value.span, message).help(help));
+                let couple = Rewriting::WordBefore("fix", law.target.span, "couple");
+                context
+                    .report(Diagnostic::new(Code::NotConstant, law.value.span, message).help(help).rewriting(couple));
                 value = None;
             }
             axes[index].law = Some((value, *kind, law.target.span));

@@ -6,6 +6,7 @@ use flank_expr::{Curve, CurveError, Expr};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::sampled::{self, SampledPoints};
 use crate::syntax::ast::{self, Call, Expression, ExpressionKind};
@@ -223,7 +224,11 @@ fn spline<'g>(
             let step = f64::hypot(x - points[k - 1].0, y - points[k - 1].1);
             if step == 0.0 {
                 let message = format!("points {} and {} of this spline are the same", k, k + 1);
-                return no_run(context, places[k.min(places.len() - 1)], &message, "leave one of them out");
+                let place = places[k.min(places.len() - 1)];
+                let same = Diagnostic::new(Code::BrokenProfile, place, message).help("leave one of them out");
+                // of a table all points have one place
+                context.report(if places.len() > k { same.rewriting(Rewriting::Entry(place)) } else { same });
+                return None;
             }
             run += step;
         }
@@ -346,7 +351,8 @@ fn check_joint<'g>(context: &mut Context<'g>, one: &Segment<'g>, next: &Segment<
         let point = |x, y| format!("[{}, {}]", shown(x, Dimension::LENGTH), shown(y, Dimension::LENGTH));
         let message = format!("`{}` begins {} from the end of `{}`", next.name, rounded(gap), one.name);
         let help = format!("let it begin at {} instead of {}", point(x0, y0), point(x1, y1));
-        let diagnostic = Diagnostic::new(Code::BrokenProfile, next.span, message).help(help);
+        let beginning = Rewriting::Beginning(next.span, point(x0, y0));
+        let diagnostic = Diagnostic::new(Code::BrokenProfile, next.span, message).help(help).rewriting(beginning);
         context.report(diagnostic.note(one.span, "the segment before it"));
     }
 }

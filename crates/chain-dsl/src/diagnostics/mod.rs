@@ -3,10 +3,12 @@
 pub(crate) mod codes;
 pub(crate) mod explain;
 pub(crate) mod render;
+pub(crate) mod rewriting;
 pub(crate) mod source;
 pub(crate) mod spelling;
 
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Sources, Span};
 
 /// How bad it is.
@@ -53,15 +55,15 @@ pub struct Diagnostic {
     pub help: Option<String>,
     /// Changes that mend it, the likeliest first.
     pub cures: Vec<Cure>,
-    /// A value that lacks a unit, and the unit: how it is added shows in the text.
-    pub(crate) lacks_unit: Option<(Span, &'static str)>,
+    /// Changes that mend it, whose words stand in the text.
+    pub(crate) rewritings: Vec<Rewriting>,
 }
 
 impl Diagnostic {
     /// A finding without further places and without help.
     pub fn new(code: Code, span: Span, message: impl Into<String>) -> Diagnostic {
         let message = message.into();
-        Diagnostic { code, span, message, notes: Vec::new(), help: None, cures: Vec::new(), lacks_unit: None }
+        Diagnostic { code, span, message, notes: Vec::new(), help: None, cures: Vec::new(), rewritings: Vec::new() }
     }
 
     /// Adds a way out.
@@ -87,15 +89,16 @@ impl Diagnostic {
         self.help(format!("write `{text}`")).cure(format!("write `{text}`"), span, text)
     }
 
-    /// Turns a unit that lacks into a change of the text.
-    pub(crate) fn with_unit(mut self, sources: &Sources) -> Diagnostic {
-        let Some((span, unit)) = self.lacks_unit.take() else { return self };
-        let text = sources.text(span);
-        // units stand behind numbers only
-        let is_number =
-            text.trim_start_matches('-').chars().all(|letter| letter.is_ascii_digit() || ".eE".contains(letter));
-        let written = if is_number { format!("{text} {unit}") } else { format!("({text}) * 1 {unit}") };
-        self.cure(format!("write `{written}`"), span, written)
+    /// Adds a change that mends it, whose words stand in the text.
+    pub(crate) fn rewriting(mut self, by: Rewriting) -> Diagnostic {
+        self.rewritings.push(by);
+        self
+    }
+
+    /// With what its changes write.
+    pub(crate) fn written_out(mut self, sources: &Sources) -> Diagnostic {
+        self.cures.extend(self.rewritings.drain(..).filter_map(|by| by.cure(sources)));
+        self
     }
 
     /// Error or warning: a property of the code.

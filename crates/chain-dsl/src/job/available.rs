@@ -154,16 +154,22 @@ impl<'g> Builder<'_, 'g> {
             return;
         }
         let message = format!("`{}` is not mounted on any frame", tool.node);
-        let frames = self.frames_to_choose_from().unwrap_or_default();
-        let help = format!("say on which frame it sits: `mount {} on …`{frames}", tool.node);
-        context.report(Diagnostic::new(Code::NotMounted, tool.span, message).help(help));
+        let frames = self.frames_to_choose_from();
+        let listed: Vec<&str> = frames.iter().map(String::as_str).collect();
+        let choice = if frames.is_empty() { String::new() } else { format!("; there is: {}", quoted(&listed)) };
+        let help = format!("say on which frame it sits: `mount {} on …`{choice}", tool.node);
+        let mut diagnostic = Diagnostic::new(Code::NotMounted, tool.span, message).help(help);
+        for (frame, end) in frames.iter().filter_map(|frame| Some((frame, self.end?))) {
+            let mount = format!("mount {} on {frame}", tool.node);
+            diagnostic = diagnostic.cure(format!("add `{mount}`"), end, format!("    {mount}\n"));
+        }
+        context.report(diagnostic);
     }
 
-    /// The frames that a tool may sit on, unless they are too many to read.
-    fn frames_to_choose_from(&self) -> Option<String> {
+    /// The frames that a tool may sit on; none where they are too many to read.
+    fn frames_to_choose_from(&self) -> Vec<String> {
         let all = (0..self.machines.len()).flat_map(|m| (0..self.machines[m].2.frames.len()).map(move |k| (m, k)));
         let names: Vec<String> = all.map(|frame| self.frame_name(frame)).take(READABLE + 1).collect();
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        (1..=READABLE).contains(&names.len()).then(|| format!("; there is: {}", quoted(&names)))
+        if names.len() > READABLE { Vec::new() } else { names }
     }
 }

@@ -6,6 +6,7 @@ use crate::definitions::closure::Linkage;
 use crate::definitions::machine::{Built, BuiltAxis};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::Machine;
 use crate::values::context::{Context, quoted};
@@ -77,6 +78,7 @@ impl<'g> Builder<'_, 'g> {
         let (residuals, spans): (Vec<Expr<'g>>, Vec<Span>) = linkage.residuals.iter().copied().unzip();
         let residuals = context.graph.substitute(&residuals, &self.laws);
         let names = linkage.names(&built.axes);
+        let mut keeps = Vec::new();
         let (why, help) = match context.solved(&residuals, &unknowns, &dimensions, &self.scope, spans[0]) {
             Ok(laws) => return Some(laws),
             // a machine whose parameters have no values yet
@@ -92,6 +94,7 @@ impl<'g> Builder<'_, 'g> {
             Err(Unsolved::Several(place, branches)) => {
                 let all = quoted(&names);
                 let why = format!("in the ranges of {all}, it closes in more than one way{place}");
+                keeps.extend(branches.iter().filter_map(|branch| kept(branch, &names, &dimensions)));
                 let told = branches.iter().map(|branch| told(branch, &names, &dimensions));
                 (why, format!("say behind `close` which branch is meant{}", listed(told.collect())))
             }
@@ -117,7 +120,8 @@ impl<'g> Builder<'_, 'g> {
         };
         let message = format!("a loop of `{}` cannot be closed: {why}", machine.node);
         let open = Diagnostic::new(Code::OpenLoop, machine.span, message).note(spans[0], "this one");
-        context.report(open.help(help));
+        let keeps = keeps.into_iter().map(|keep| Rewriting::Closing(spans[0], keep));
+        context.report(keeps.fold(open.help(help), Diagnostic::rewriting));
         None
     }
 }
@@ -126,9 +130,13 @@ impl<'g> Builder<'_, 'g> {
 fn told(branch: &Branch, names: &[&str], dimensions: &[Dimension]) -> String {
     let value = |(k, value): (usize, &f64)| format!("`{}` = {}", names[k], shown_briefly(*value, dimensions[k]));
     let values: Vec<String> = branch.values.iter().enumerate().map(value).collect();
-    let keep = branch.keep.map(|(k, ends)| {
-        let [low, high] = ends.map(|end| shown(end, dimensions[k]));
-        format!(" by `keep {}: {low} .. {high}`", names[k])
-    });
-    format!("{}{}", values.join(", "), keep.unwrap_or_default())
+    let by = kept(branch, names, dimensions).map(|keep| format!(" by `{keep}`"));
+    format!("{}{}", values.join(", "), by.unwrap_or_default())
+}
+
+/// What says that a branch is meant.
+fn kept(branch: &Branch, names: &[&str], dimensions: &[Dimension]) -> Option<String> {
+    let (k, ends) = branch.keep?;
+    let [low, high] = ends.map(|end| shown(end, dimensions[k]));
+    Some(format!("keep {}: {low} .. {high}", names[k]))
 }

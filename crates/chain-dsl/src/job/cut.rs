@@ -2,6 +2,7 @@
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::model::{GeneratedSurface, Process};
 use crate::syntax::ast;
 use crate::values::context::Context;
@@ -29,7 +30,8 @@ impl<'g> Builder<'_, 'g> {
         }
         if ideal.cut_by.is_some() {
             let message = format!("`{}` is cut twice", surface.joined());
-            return context.report(wrong(message, "take one of them away"));
+            let statement = Rewriting::Without("cut", surface.span.to(by.span));
+            return context.report(wrong(message, "take one of them away").rewriting(statement));
         }
         self.surfaces[index].0.cut_by = Some(edges);
     }

@@ -4,6 +4,7 @@ use flank_expr::Expr;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
@@ -336,8 +337,10 @@ fn listed<'g>(
         if !runs_on {
             let [value, last] = [value, values[values.len() - 1]].map(|value| shown(value, dimension));
             let message = format!("the values of {what} run one way, and {value} stands behind {last}");
-            let help = "put them in order, each once";
-            context.report(Diagnostic::new(Code::SampleShape, place.span, message).help(help));
+            let mut unordered =
+                Diagnostic::new(Code::SampleShape, place.span, message).help("put them in order, each once");
+            unordered.rewritings.extend(ordered(&found, &written.parts(found.len())));
+            context.report(unordered);
             return None;
         }
         exprs.push(expr);
@@ -357,6 +360,23 @@ pub fn spaced((low, high): (f64, f64), count: usize) -> Vec<f64> {
     let share = |k: usize| if count > 1 { k as f64 / (count - 1) as f64 } else { 0.5 };
     let between = |share: f64| low * (1.0 - share) + high * share;
     (0..count).map(|k| between(share(k)).max(low.min(high)).min(low.max(high))).collect()
+}
+
+/// The values of a list as they run, each once; nothing where they are not written one by one.
+fn ordered(found: &[Value<'_>], written: &[&Expression]) -> Option<Rewriting> {
+    let [first, second, ..] = written else { return None };
+    let number = |value: &Value<'_>| if let Value::Scalar(expr, _) = value { expr.as_constant() } else { None };
+    let entries = found.iter().zip(written).map(|(value, place)| Some((number(value)?, place.span)));
+    let mut entries: Vec<(f64, Span)> = entries.collect::<Option<_>>()?;
+    let is_falling = entries[1].0 < entries[0].0;
+    entries.sort_by(|a, b| a.0.total_cmp(&b.0));
+    entries.dedup_by(|a, b| a.0 == b.0);
+    if is_falling {
+        entries.reverse();
+    }
+    let all = first.span.to(written[written.len() - 1].span);
+    let spans = entries.into_iter().map(|(_, span)| span).collect();
+    (first.span != second.span).then_some(Rewriting::Ordered(all, spans))
 }
 
 fn check_size(context: &mut Context<'_>, path: &ast::Path, rows: usize, columns: usize) -> Option<()> {

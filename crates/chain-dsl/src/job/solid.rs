@@ -6,6 +6,7 @@ use flank_expr::Expr;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::Span;
 use crate::model::{Job, OutlineCurve, OutlineSegment, Solid, SolidForm};
 use crate::syntax::ast::{self, Expression, ExpressionKind};
@@ -175,7 +176,8 @@ impl<'g> Builder<'_, 'g> {
             let (its, own) = &self.surfaces[index];
             let wrong = |message: String, help: &str| Diagnostic::new(Code::Solid, path.span, message).help(help);
             if found.contains(&index) {
-                context.report(wrong(format!("`{}` is in the space twice", path.joined()), "take one of them away"));
+                let twice = wrong(format!("`{}` is in the space twice", path.joined()), "take one of them away");
+                context.report(twice.rewriting(Rewriting::Entry(path.span)));
                 return None;
             }
             if own.0 == frame.0 && own.1 != frame.1 {

@@ -5,6 +5,7 @@ use flank_expr::geometry::{Chain, Step, Surface};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
 use crate::limits;
@@ -247,7 +248,8 @@ impl<'g> Builder<'_, 'g> {
                 let message =
                     format!("`{}` does not move `{}` against the work", motion.name, self.frame_name(available.frame));
                 let help = "drive an axis with it, or leave it out of `over:`";
-                context.report(Diagnostic::new(Code::IdleMotion, *span, message).help(help));
+                let idle = Diagnostic::new(Code::IdleMotion, *span, message).help(help);
+                context.report(idle.rewriting(Rewriting::Entry(*span)));
                 fine = false;
             }
         }
@@ -269,7 +271,19 @@ impl<'g> Builder<'_, 'g> {
             let message = format!("the tool also moves with {all}, but the envelope is not over {them}");
             let over: Vec<&str> = motions.iter().map(|(over, _)| over.name.as_str()).chain(free).collect();
             let help = format!("add {them}: `over: [{}]`", over.join(", "));
-            context.report(Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help));
+            let free = Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help);
+            let free = match (motions.first(), motions.last()) {
+                (Some((_, first)), Some((_, last))) => {
+                    free.rewriting(Rewriting::Entries(first.to(*last), over.join(", ")))
+                }
+                _ => {
+                    let Span { end, .. } = written.value.span;
+                    let inside = Span { start: end - 1, end: end - 1, ..written.value.span };
+                    let list = format!("over: [{}]", over.join(", "));
+                    free.cure(format!("add `{list}`"), inside, format!(", {list}"))
+                }
+            };
+            context.report(free);
             fine = false;
         }
         fine
@@ -288,7 +302,8 @@ impl<'g> Builder<'_, 'g> {
         }
         if self.surfaces[index].0.trimmed_by.contains(&other) {
             let message = format!("`{}` is trimmed by `{}` twice", surface.joined(), by.joined());
-            return context.report(wrong(message, "take one of them away"));
+            let statement = Rewriting::Without("trim", surface.span.to(by.span));
+            return context.report(wrong(message, "take one of them away").rewriting(statement));
         }
         self.surfaces[index].0.trimmed_by.push(other);
     }
@@ -455,17 +470,18 @@ fn made<'g>(
         context.report(Diagnostic::new(Code::WrongKind, span, message).help(help));
         None
     };
+    let other = |context: &mut Context<'g>, span, message: &str, (help, process): (&str, &str)| {
+        let wrong = Diagnostic::new(Code::WrongKind, span, message).help(help);
+        context.report(wrong.cure(format!("write `{process}`"), call.function.span, process));
+        None
+    };
     match (process, &available.shape) {
         (Process::Envelope, ToolShape::Surface(surface)) => Some(surface.envelope(driven, over)),
         (Process::Move, ToolShape::Surface(surface)) if over.is_empty() => Some(surface.moved(driven)),
         (Process::Move, ToolShape::Surface(_)) => {
             let help = "for what a moving tool leaves, say `envelope`";
-            wrong(
-                context,
-                call.span,
-                "`move` shows a surface from a frame that stands still to it: it takes no motion",
-                help,
-            )
+            let message = "`move` shows a surface from a frame that stands still to it: it takes no motion";
+            other(context, call.span, message, (help, "envelope"))
         }
         (Process::Sweep, ToolShape::Edge(_)) if over.is_empty() => {
             wrong(context, call.span, "`sweep` takes at least one motion", "say `over: motion`")
@@ -473,10 +489,11 @@ fn made<'g>(
         (Process::Sweep, ToolShape::Edge(edge)) => Some(edge.sweep(driven, over, flipped)),
         (Process::Sweep, ToolShape::Surface(_)) => {
             let help = "for a surface, say `envelope`; an edge is a tool's surface with one parameter";
-            wrong(context, available.named, "`sweep` takes a cutting edge, this is a surface", help)
+            other(context, available.named, "`sweep` takes a cutting edge, this is a surface", (help, "envelope"))
         }
         (Process::Envelope | Process::Move, ToolShape::Edge(_)) => {
-            wrong(context, available.named, "this is a cutting edge, not a surface", "for an edge, say `sweep`")
+            let help = ("for an edge, say `sweep`", "sweep");
+            other(context, available.named, "this is a cutting edge, not a surface", help)
         }
     }
 }

@@ -16,7 +16,7 @@ mod brackets;
 mod habits;
 mod names;
 
-pub(super) use habits::{belongs_to_value, block_comment, foreign};
+pub(super) use habits::{belongs_to_value, block_comment, foreign, line_comment};
 
 /// A piece of text that does not parse.
 pub(super) struct Mistake<'s> {
@@ -94,13 +94,23 @@ impl<'s> Mistake<'s> {
         self.scan.place(self.found)
     }
 
+    /// Where a token ends.
+    fn behind(&self, index: usize) -> Span {
+        let place = self.scan.place(index);
+        Span { start: place.end, ..place }
+    }
+
     fn here(&self, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Code::Syntax, self.place(), message)
     }
 
     fn text(&self) -> Option<Diagnostic> {
-        (self.kind() == Some(Kind::OpenText))
-            .then(|| self.here("the text is not closed").help("write `\"` at its end, on the same line"))
+        (self.kind() == Some(Kind::OpenText)).then(|| {
+            let text = self.scan.say(self.found).trim_end();
+            let end = Span { start: self.place().start + text.len() as u32, ..self.place() };
+            let help = "write `\"` at its end, on the same line";
+            self.here("the text is not closed").help(help).cure("write `\"` at its end", end, "\"")
+        })
     }
 
     /// `z: 0 mm by 3` in a sample.
@@ -109,8 +119,10 @@ impl<'s> Mistake<'s> {
         let mut entry = before.take_while(|word| !matches!(*word, "," | "{" | "by"));
         let is_of_sample = self.scan.say(self.range.start) == "sample" && self.say() == "by";
         (is_of_sample && !entry.any(|word| word == "..")).then(|| {
+            let gap = self.behind(self.found - 1).to(self.scan.place(self.found + 1));
             self.here("one value is one point and takes no `by`")
                 .help("leave it out, or write a range: `-5 mm .. 5 mm by 3`")
+                .cure("leave `by` out", gap, "")
         })
     }
 
@@ -134,7 +146,11 @@ impl<'s> Mistake<'s> {
             None => diagnostic,
         };
         match self.misspelt(&rules) {
-            Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")),
+            Some(meant) => diagnostic.help(format!("did you mean `{meant}`?")).cure(
+                format!("write `{meant}`"),
+                self.place(),
+                meant,
+            ),
             None => diagnostic,
         }
     }

@@ -8,6 +8,7 @@ use flank_expr::{Expr, Graph, Interval, IntervalEvaluator, Tape, VariableId};
 
 use crate::definitions::index::KnownValue;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::diagnostics::spelling::closest;
 use crate::diagnostics::{Diagnostic, Note, Severity};
@@ -387,8 +388,7 @@ impl<'g> Context<'g> {
                 let message = format!("{what} must be {wanted_text}, this is {}", other.described());
                 let mut diagnostic = Diagnostic::new(Code::WrongDimension, span, message);
                 if let Some((help, unit)) = unit_help(wanted, other) {
-                    diagnostic = diagnostic.help(help);
-                    diagnostic.lacks_unit = Some((span, unit));
+                    diagnostic = diagnostic.help(help).rewriting(Rewriting::Unit(span, unit));
                 }
                 self.report(diagnostic);
                 None
@@ -475,7 +475,10 @@ pub(crate) fn suggesting<'a>(
     let meant = diagnostic.help.as_deref().and_then(|help| help.strip_prefix("did you mean `")?.strip_suffix("`?"));
     match meant.map(str::to_string) {
         Some(meant) => diagnostic.cure(format!("write `{meant}`"), name.span, meant),
-        None => diagnostic,
+        None => match known[..] {
+            [only] if !only.is_empty() => diagnostic.cure(format!("write `{only}`"), name.span, only),
+            _ => diagnostic,
+        },
     }
 }
 

@@ -4,6 +4,7 @@ use flank_expr::{CurveId, Expr};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::Span;
 use crate::limits;
 use crate::syntax::ast::{self, BinaryOperator, Expression, ExpressionKind, Range, UnaryOperator};
@@ -116,7 +117,13 @@ impl<'g> Context<'g> {
             let [low, high] = [low_value, high_value].map(|value| dimension::shown(value, wanted));
             let message = format!("the range of {what} is empty: {low} is not below {high}");
             let help = if low_value > high_value { "put the smaller end first" } else { "give it two different ends" };
-            self.report(Diagnostic::new(Code::EmptyRange, range.span, message).help(help));
+            let empty = Diagnostic::new(Code::EmptyRange, range.span, message).help(help);
+            let is_turned = low_value > high_value;
+            self.report(if is_turned {
+                empty.rewriting(Rewriting::Exchange([range.low.span, range.high.span]))
+            } else {
+                empty
+            });
             return None;
         }
         Some(((low_value, high_value), [low?, high?]))
@@ -287,8 +294,8 @@ impl<'g> Context<'g> {
             .note(spans.0, Value::Scalar(a, da).described())
             .note(spans.1, Value::Scalar(b, db).described());
         if let Some((help, unit, is_first)) = missing_unit((a, da), (b, db)) {
-            diagnostic = diagnostic.help(help);
-            diagnostic.lacks_unit = Some((if is_first { spans.0 } else { spans.1 }, unit));
+            diagnostic =
+                diagnostic.help(help).rewriting(Rewriting::Unit(if is_first { spans.0 } else { spans.1 }, unit));
         }
         self.report(diagnostic);
         Value::Poison
@@ -343,8 +350,8 @@ impl<'g> Context<'g> {
             let message = format!("cannot compare {da} and {db}");
             let mut diagnostic = Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message);
             if let Some((help, unit, is_first)) = missing_unit((a, da), (b, db)) {
-                diagnostic = diagnostic.help(help);
-                diagnostic.lacks_unit = Some((if is_first { spans.0 } else { spans.1 }, unit));
+                diagnostic =
+                    diagnostic.help(help).rewriting(Rewriting::Unit(if is_first { spans.0 } else { spans.1 }, unit));
             }
             self.report(diagnostic);
             return Value::Poison;

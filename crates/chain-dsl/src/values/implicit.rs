@@ -21,6 +21,10 @@ pub(crate) struct Branch {
     pub(crate) keep: Option<(usize, [f64; 2])>,
 }
 
+fn unproven(span: Span, why: &str, help: String) -> Diagnostic {
+    Diagnostic::new(Code::Unproven, span, format!("this root cannot be proven: {why}")).help(help)
+}
+
 /// Why equations do not give their unknowns.
 pub(crate) enum Unsolved {
     /// A parameter has no value yet, or the room is used up, which has been reported.
@@ -86,7 +90,13 @@ impl<'g> Context<'g> {
                     range.map_or_else(|| value.clone(), |range| format!("{value} by `{name} in {range}`"))
                 });
                 let help = format!("narrow the range to the root that is meant{}", listed(told.collect()));
-                self.rootless(bound.value.span, &why, help)
+                let mut open = unproven(bound.value.span, &why, help);
+                for (value, ends) in branches.iter().filter_map(|branch| Some((branch.values[0], branch.keep?.1))) {
+                    let range = ends.map(|end| shown(end, dimension)).join(" .. ");
+                    open = open.cure(format!("take {}", shown_briefly(value, dimension)), bound.range.span, range);
+                }
+                self.report(open);
+                Value::Poison
             }
             Err(Unsolved::Not(why, place)) => {
                 let [low, high] = [low, high].map(|end| shown(end, dimension));
@@ -108,8 +118,7 @@ impl<'g> Context<'g> {
     }
 
     fn rootless(&mut self, span: Span, why: &str, help: String) -> Value<'g> {
-        let message = format!("this root cannot be proven: {why}");
-        self.report(Diagnostic::new(Code::Unproven, span, message).help(help));
+        self.report(unproven(span, why, help));
         Value::Poison
     }
 

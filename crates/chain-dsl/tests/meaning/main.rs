@@ -1,6 +1,7 @@
 //! What texts mean: mistakes of meaning with what is said of them, files that use each other, values from outside.
 
 mod coverage;
+mod cures;
 mod files;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;

@@ -1,11 +1,10 @@
 //! The commands: each asks the library, and prints what it answers.
 
 pub(crate) mod check;
+pub(crate) mod editor;
 pub(crate) mod explain;
 pub(crate) mod fmt;
 pub(crate) mod import;
-pub(crate) mod live;
-pub(crate) mod lsp;
 pub(crate) mod new;
 pub(crate) mod operations;
 pub(crate) mod schema;

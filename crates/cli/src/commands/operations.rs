@@ -5,7 +5,7 @@ use flank::{Answer, Failure as Refused, Monitor};
 use crate::arguments::{
     Contact, Convert, Derive, Deviation, Fit, Measure, Mesh, Mill, Plot, Report, Solve, Tolerance, View,
 };
-use crate::commands::live;
+use crate::commands::editor;
 use crate::failure::Failure;
 use crate::progress::{Terminal, noted};
 use crate::spelling::with_flags;
@@ -49,7 +49,7 @@ pub(crate) fn report(arguments: &Report) -> Result<Ending, Failure> {
 
 pub(crate) fn view(arguments: &View) -> Result<Ending, Failure> {
     if arguments.serve {
-        return live::run(arguments);
+        return editor::view(arguments);
     }
     let request = arguments.request()?;
     told(arguments.json, |monitor, each| flank::view(&request, monitor, each))

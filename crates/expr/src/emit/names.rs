@@ -1,5 +1,8 @@
 //! Names that all languages take for identifiers.
 
+use std::collections::HashSet;
+use std::sync::LazyLock;
+
 use super::helpers::Helper;
 use crate::symbolic::print::GREEK;
 
@@ -77,11 +80,15 @@ fn identifier(text: &str) -> String {
 }
 
 fn is_reserved(name: &str) -> bool {
-    let is_among = |list: &str, name: &str| list.split_whitespace().any(|word| word == name);
+    /// Words of the languages, and functions of mathematics.
+    static RESERVED: LazyLock<[HashSet<&str>; 2]> = LazyLock::new(|| {
+        let words = [C, CPP, RUST, JAVASCRIPT, MACROS].into_iter().flat_map(str::split_whitespace);
+        [words.collect(), MATHEMATICS.split_whitespace().collect()]
+    });
+    let [words, mathematics] = &*RESERVED;
     // of float and long double
     let plain = name.strip_suffix(['f', 'l']).unwrap_or(name);
-    [C, CPP, RUST, JAVASCRIPT, MACROS].into_iter().any(|list| is_among(list, name))
-        || [name, plain].into_iter().any(|name| is_among(MATHEMATICS, name))
+    words.contains(name) || mathematics.contains(name) || mathematics.contains(plain)
 }
 
 /// Keywords to C23, what GNU's compilers define beside them, and the one function that is called from outside.

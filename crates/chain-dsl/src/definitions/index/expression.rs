@@ -164,7 +164,7 @@ impl<'a> Names<'a> {
         let name = call.function.node.as_str();
         // a table, a grid or a profile that has a name
         let found = match self.value(name, place) {
-            Target::Symbol(id) if self.kind(id) != NameKind::Job => Some(id),
+            Target::Symbol(id) if !matches!(self.kind(id), NameKind::Job | NameKind::Coordinate) => Some(id),
             _ => self.global(name, NameKind::Function),
         };
         match found {

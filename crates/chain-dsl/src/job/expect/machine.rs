@@ -10,6 +10,7 @@ use crate::definitions::instance::Overrides;
 use crate::definitions::transforms;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::Name;
 use crate::job::{Builder, Definitions, posed, standing};
 use crate::model::{Axis, Job, LawSource, Machine};
@@ -183,18 +184,25 @@ impl Pose<'_> {
         name: &Name,
         argument: &Argument,
     ) -> Option<f64> {
-        let help = "leave it out: a pose is that of the axes that are free";
+        let entry = Rewriting::Entry(name.span.to(argument.value.span));
+        let lawful = |context: &mut Context<'g>, message: String| {
+            let help = "leave it out: a pose is that of the axes that are free";
+            context.report(Diagnostic::new(Code::Expectation, name.span, message).help(help).rewriting(entry));
+            None
+        };
         match axis.source {
             LawSource::Free => {}
             LawSource::Closed => {
-                let message = format!("axis `{}` is unknown: a loop of its machine says where it stands", axis.name);
-                wrong(context, name.span, message, help);
-                return None;
+                return lawful(
+                    context,
+                    format!("axis `{}` is unknown: a loop of its machine says where it stands", axis.name),
+                );
             }
             LawSource::Fixed | LawSource::Coupled | LawSource::Driven => {
-                let message = format!("axis `{}` has a law of its machine: it stands where that says", axis.name);
-                wrong(context, name.span, message, help);
-                return None;
+                return lawful(
+                    context,
+                    format!("axis `{}` has a law of its machine: it stands where that says", axis.name),
+                );
             }
         }
         let what = format!("axis `{}`", axis.name);

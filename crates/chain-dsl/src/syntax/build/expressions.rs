@@ -72,7 +72,7 @@ impl Build<'_> {
             let (kind, strength) = operator(next.as_str());
             let place = self.span(&next);
             if strength == operator_strength(BinaryOperator::Less) {
-                self.not_chained(compared, place);
+                self.not_chained(compared, place, &left.0);
                 compared = Some(place);
             }
             let right = self.operation(row, if kind == BinaryOperator::Power { strength } else { strength + 1 });
@@ -84,13 +84,15 @@ impl Build<'_> {
         left
     }
 
-    fn not_chained(&mut self, first: Option<Span>, second: Span) {
-        if let Some(first) = first {
-            let diagnostic = Diagnostic::new(Code::Syntax, second, "comparisons do not chain")
-                .note(first, "compared here already")
-                .help("write `a < b and b < c`");
-            self.diagnostics.push(diagnostic);
-        }
+    fn not_chained(&mut self, first: Option<Span>, second: Span, left: &Expression) {
+        let (Some(first), ExpressionKind::Binary(_, _, middle)) = (first, &left.kind) else { return };
+        let text = &self.scan.text[middle.span.start as usize..middle.span.end as usize];
+        let behind = Span { start: middle.span.end, ..middle.span };
+        let diagnostic = Diagnostic::new(Code::Syntax, second, "comparisons do not chain")
+            .note(first, "compared here already")
+            .help("write `a < b and b < c`")
+            .cure(format!("write `and {text}`"), behind, format!(" and {text}"));
+        self.diagnostics.push(diagnostic);
     }
 
     fn operand(&mut self, row: &mut Row<'_>) -> Tree {

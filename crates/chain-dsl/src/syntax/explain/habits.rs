@@ -94,18 +94,64 @@ impl Mistake<'_> {
             _ => block_comment(self.scan, self.found)?,
         };
         let diagnostic = self.unexpected().help(help);
-        // of some the text to write is the same wherever they stand
-        let cure = match (self.before(), self.say(), help) {
+        Some(match self.sign_here(help) {
+            Some((title, span, text)) => diagnostic.cure(title, span, text),
+            None => diagnostic,
+        })
+    }
+
+    /// The change that such a help asks for, where the text to write follows from what stands there.
+    fn sign_here(&self, help: &str) -> Option<(&'static str, Span, String)> {
+        let text = |span: Span| &self.scan.text[span.start as usize..span.end as usize];
+        let before = |sign: &str| (self.range.start..self.found).rev().find(|at| self.scan.say(*at) == sign);
+        let after = |sign: &str| (self.found..self.range.end).find(|at| self.scan.say(*at) == sign);
+        let replaced = match (self.before(), self.say(), help) {
             ("*", "*", _) => ("write `^`", self.scan.extent(self.found - 1..self.found + 1), "^"),
             (_, "=", "an argument gets its value with `:`") => ("write `:`", self.place(), ":"),
             (_, "=", "values are compared with `==`") => ("write `==`", self.place(), "=="),
             (_, "==", _) => ("write `=`", self.place(), "="),
             (")", "*", _) => ("leave `*` out", self.place(), ""),
             (_, ",", _) => ("leave `,` out", self.place(), ""),
-            _ => return Some(diagnostic),
+            (_, ".", _) if self.scan.is_name(self.found + 1) => {
+                ("leave the file out", self.scan.extent(self.found - 1..self.found + 1), "")
+            }
+            (_, ":", _) => {
+                let end = self.behind(after("=")? - 1);
+                ("leave the dimension out", Span { start: self.behind(self.found - 1).start, ..end }, "")
+            }
+            (_, "in", _) => {
+                let equals = before("=")?;
+                let [value, range] =
+                    [equals + 1..self.found, self.found..self.range.end].map(|of| self.scan.extent(of));
+                let whole = self.scan.place(equals).to(range);
+                return Some(("put the range first", whole, format!("{} = {}", text(range), text(value))));
+            }
+            (_, "if", _) => {
+                let whole = self.scan.extent(self.found..self.end_of_value());
+                return Some(("write parentheses", whole, format!("({})", text(whole))));
+            }
+            (_, "/", _) | ("/", "*", _) => {
+                let open = if self.say() == "/" { self.found } else { self.found - 1 };
+                return line_comment(self.scan, open);
+            }
+            _ => return None,
         };
-        let (title, span, text) = cure;
-        Some(diagnostic.cure(title, span, text))
+        let (title, span, text) = replaced;
+        Some((title, span, text.to_string()))
+    }
+
+    /// One past the last token before a comma, or a bracket that is open, ends the value at hand.
+    fn end_of_value(&self) -> usize {
+        let mut depth = 0usize;
+        for index in self.found..self.range.end {
+            match self.scan.say(index) {
+                "(" | "[" | "{" => depth += 1,
+                ")" | "]" | "}" if depth > 0 => depth -= 1,
+                ")" | "]" | "}" | "," if depth == 0 => return index,
+                _ => {}
+            }
+        }
+        self.range.end
     }
 }
 
@@ -119,19 +165,53 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
     let diagnostic = Diagnostic::new(Code::Syntax, place, message);
     let sign = scan.say(index);
     if let Some(text) = written_here(sign) {
-        // a unit stands behind its number with a space
+        let is_twice = matches!(sign, "&" | "|") && scan.say(index + 1) == sign;
+        let whole = scan.extent(index..index + if is_twice { 2 } else { 1 });
+        let next = index + if is_twice { 2 } else { 1 };
+        // words stand apart, as units do from their numbers
         let is_word = text.starts_with(char::is_alphabetic);
-        let apart = if is_word && index > 0 && scan.place(index - 1).end == place.start { " " } else { "" };
+        let space = |touches: bool| if is_word && touches { " " } else { "" };
+        let before = space(index > 0 && scan.place(index - 1).end == place.start);
+        let behind = space(scan.kind(next) == Some(Kind::Word) && scan.place(next).start == whole.end);
         let title = format!("write `{text}`");
-        return Some(diagnostic.help(title.clone()).cure(title, place, format!("{apart}{text}")));
+        return Some(diagnostic.help(title.clone()).cure(title, whole, format!("{before}{text}{behind}")));
     }
-    Some(match (strange(sign), sign) {
-        (Some(help), ";") => diagnostic.help(help).cure("leave `;` out", place, ""),
-        (Some(help), "…") => diagnostic.help(help).cure("write `..`", place, " .. "),
-        (Some(help), "\u{a0}" | "\u{2009}" | "\u{202f}") => diagnostic.help(help).cure(help, place, " "),
-        (Some(help), _) => diagnostic.help(help),
-        (None, _) => diagnostic,
+    let Some(help) = strange(sign) else { return Some(diagnostic) };
+    let diagnostic = diagnostic.help(help);
+    Some(match sign {
+        ";" => diagnostic.cure("leave `;` out", place, ""),
+        "…" => diagnostic.cure("write `..`", place, " .. "),
+        "\u{a0}" | "\u{2009}" | "\u{202f}" => diagnostic.cure(help, place, " "),
+        "#" => diagnostic.cure("write `//`", place, "//"),
+        "%" if scan.indent(index).is_some() => diagnostic.cure("write `//`", place, "//"),
+        "√" if scan.say(index + 1) == "(" => diagnostic.cure("write `sqrt`", place, "sqrt"),
+        "√" if matches!(scan.kind(index + 1), Some(Kind::Word | Kind::Number)) => {
+            let whole = scan.extent(index..index + 2);
+            diagnostic.cure("write `sqrt`", whole, format!("sqrt({})", scan.say(index + 1)))
+        }
+        _ => match quoted(scan, place) {
+            Some((whole, text)) => diagnostic.cure(format!("write `{text}`"), whole, text),
+            None => diagnostic,
+        },
     })
+}
+
+/// A text between other signs that opens at a place, and how it is written here.
+fn quoted(scan: &Scan, open: Span) -> Option<(Span, String)> {
+    let line = scan.text[open.end as usize..].split(['\n', '\r']).next()?;
+    let inside = line.split(['\'', '‘', '’', '“', '”', '"']).next().filter(|inside| inside.len() < line.len())?;
+    let end = open.end as usize + inside.len();
+    let closing = scan.text[end..].chars().next()?.len_utf8();
+    Some((Span { end: (end + closing) as u32, ..open }, format!("\"{inside}\"")))
+}
+
+/// A comment of one line between `/*` and `*/`, and how it is written here.
+pub(in super::super) fn line_comment(scan: &Scan, open: usize) -> Option<(&'static str, Span, String)> {
+    let start = scan.place(open);
+    let line = scan.text[start.start as usize..].split(['\n', '\r']).next()?.trim_end();
+    let inside = line.strip_prefix("/*")?.strip_suffix("*/").filter(|inside| !inside.contains("*/"))?;
+    let whole = Span { end: start.start + line.len() as u32, ..start };
+    Some(("write `//`", whole, format!("//{}", inside.trim_end())))
 }
 
 /// Whether a character is a sign from elsewhere for a part of a value: what stands before it is no whole value.

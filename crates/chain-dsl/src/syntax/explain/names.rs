@@ -51,14 +51,22 @@ impl Mistake<'_> {
                 let message = format!("`{word}` is a word of the language and cannot be a name");
                 let statement = self.scan.say(self.range.start);
                 let is_new = self.found == self.range.start + 1 && words::defines(statement);
-                let help = format!("choose another, such as `{word}_{}`", expected::noun(statement));
-                Some(if is_new { self.here(message).help(help) } else { self.here(message) })
+                let other = format!("{word}_{}", expected::noun(statement));
+                let help = format!("choose another, such as `{other}`");
+                Some(match is_new {
+                    true => self.here(message).help(help).cure(format!("write `{other}`"), self.place(), other),
+                    false => self.here(message),
+                })
             }
             Reserved::Unit if name => Some(self.here(format!("`{word}` is a unit and cannot be a name"))),
-            Reserved::Unit if value || wants(&[Rule::infix]) => Some(
-                self.here(format!("the unit `{word}` does not follow a number"))
-                    .help(format!("a unit follows a number, as in `1 {word}`")),
-            ),
+            Reserved::Unit if value || wants(&[Rule::infix]) => {
+                let written = if value { format!("1 {word}") } else { format!("* 1 {word}") };
+                Some(
+                    self.here(format!("the unit `{word}` does not follow a number"))
+                        .help(format!("a unit follows a number, as in `1 {word}`"))
+                        .cure(format!("write `{written}`"), self.place(), written),
+                )
+            }
             Reserved::Dimension if name || value => {
                 Some(self.here(format!("`{word}` is a dimension and cannot be a name")))
             }

@@ -2,9 +2,9 @@
 
 use pest::iterators::Pair;
 
-use crate::diagnostics::Note;
 use crate::diagnostics::source::Span;
 use crate::diagnostics::spelling::closest;
+use crate::diagnostics::{Cure, Note};
 
 use super::super::ast::{Item, Job, JobStatement, Machine, Profile, Segment, Tool, ToolStatement};
 use super::super::build::Head;
@@ -110,7 +110,18 @@ impl<'s> Recover<'s> {
     fn nested_item(&mut self, block: &Block) {
         let word = self.say();
         let help = format!("is a `}}` missing before this `{word}`?");
-        self.report(self.at, format!("`{word}` cannot stand in a {}", block.noun())).help = Some(help);
+        let place = self.scan.place(self.at);
+        let lacks_brace = self.scan.lacks_closing_brace;
+        let diagnostic = self.report(self.at, format!("`{word}` cannot stand in a {}", block.noun()));
+        diagnostic.help = Some(help);
+        if lacks_brace {
+            let before = Span { end: place.start, ..place };
+            diagnostic.cures.push(Cure {
+                title: "write `}` before it".into(),
+                span: before,
+                replacement: "}\n\n".into(),
+            });
+        }
         self.nested += 1;
         self.item(word, true);
         self.nested -= 1;
@@ -206,17 +217,17 @@ impl<'s> Recover<'s> {
         let meant = closest(word, block.words().iter().copied()).filter(|meant| !assigns || *meant == "at");
         let named = if assigns { first } else { first + 1 };
         let place = scan.place(first);
-        let help = match meant {
-            Some(_) => String::new(),
-            None if scan.is_name(named) && scan.say(named + 1) == "=" => {
-                format!("write `let {} = …` to give a value a name", scan.short(named))
-            }
-            None => list,
-        };
+        let is_let = block.words().contains(&"let") && scan.is_name(named) && scan.say(named + 1) == "=";
         let diagnostic = self.report(first, format!("{} does not begin a statement", scan.quote(first)));
         match meant {
             Some(meant) => mean(diagnostic, place, meant),
-            None => diagnostic.help = Some(help),
+            None if is_let => {
+                diagnostic.help = Some(format!("write `let {} = …` to give a value a name", scan.short(named)));
+                let before = Span { end: if assigns { place.start } else { place.end }, ..place };
+                let replacement = if assigns { "let " } else { "let" }.to_string();
+                diagnostic.cures.push(Cure { title: "write `let`".to_string(), span: before, replacement });
+            }
+            None => diagnostic.help = Some(list),
         }
         if meant == Some("surface") && matches!(block, Block::Tool(_)) {
             return self.tool_surface(block, false);

@@ -207,8 +207,12 @@ impl<'s> Recover<'s> {
     fn report_sign(&mut self, expected: &str, help: &str) {
         let diagnostic = explain::foreign(self.scan, self.at).unwrap_or_else(|| {
             let message = format!("expected {expected}, found {}", self.scan.quote(self.at));
-            Diagnostic::new(Code::Syntax, self.scan.place(self.at), message)
-                .help(explain::block_comment(self.scan, self.at).unwrap_or(help))
+            let diagnostic = Diagnostic::new(Code::Syntax, self.scan.place(self.at), message);
+            let Some(comment) = explain::block_comment(self.scan, self.at) else { return diagnostic.help(help) };
+            match explain::line_comment(self.scan, self.at) {
+                Some((title, span, text)) => diagnostic.help(comment).cure(title, span, text),
+                None => diagnostic.help(comment),
+            }
         });
         self.build.diagnostics.push(diagnostic);
     }

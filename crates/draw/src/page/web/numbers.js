@@ -2,7 +2,9 @@
 
 /** Doubles, little-endian, as base64. */
 export function decoded(text) {
-    const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
+    const letters = atob(text);
+    const bytes = new Uint8Array(letters.length);
+    for (let k = 0; k < bytes.length; k++) bytes[k] = letters.charCodeAt(k);
     return new Float64Array(bytes.buffer);
 }
 

@@ -16,6 +16,8 @@ export class Stage {
         this.canvas = canvas;
         this.layer = layer;
         this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+        // a look at each shader waits for the graphics processor
+        this.renderer.debug.checkShaderErrors = false;
         this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
         this.scene = new THREE.Scene();
         this.camera = new THREE.PerspectiveCamera(24, 1, 1, 1e5);

@@ -7,6 +7,17 @@ import { Equations, follow } from "./newton.js";
 const ROUNDING = 1e-10;
 const SOLVED = 0;
 
+/** A field whose numbers are decoded when they are looked at first: a surface has dozens. */
+function decodedLater(field) {
+    let values = null;
+    return {
+        ...field,
+        get values() {
+            return (values ??= decoded(field.values));
+        },
+    };
+}
+
 export class WorkSurface {
     constructor(data, functions) {
         this.data = data;
@@ -22,7 +33,7 @@ export class WorkSurface {
         };
         this.words = [...data.words];
         this.targets = decoded(data.targets);
-        this.fields = data.fields.map((field) => ({ ...field, values: decoded(field.values) }));
+        this.fields = data.fields.map(decodedLater);
         this.cornersAt = functions[data.corners];
         this.pointAt = functions[data.point];
         this.equations = new Equations(functions[data.equations], data.unknowns.map(({ low, high }) => [low, high]));

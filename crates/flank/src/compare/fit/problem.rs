@@ -75,7 +75,7 @@ impl<'p, 'g> Problem<'p, 'g> {
             let positions: Vec<[f64; 3]> =
                 known.iter().map(|(_, point)| turned(point.position, start + further(k))).collect();
             let near: Vec<NearFoot> = known.iter().map(|(_, point)| point.near.clone()).collect();
-            let feet = surface.feet(&now, &positions, &near);
+            let feet = surface.at(&now).feet(&positions, &near);
             for foot in feet.iter().flatten() {
                 squares.iter_mut().zip(&foot.moved).for_each(|(sum, moved)| *sum += moved * moved);
                 count += 1.0;

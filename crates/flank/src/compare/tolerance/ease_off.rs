@@ -1,7 +1,7 @@
 //! The ease-off of a surface from itself when settings change.
 
 use flank_chain_dsl::Parameter;
-use flank_solver::{AdjustableSurface, BoundSurface, EaseOff, Foot, NearFoot, Outcome};
+use flank_solver::{AdjustableSurface, BoundSurface, EaseOff, Foot, FootSearch, NearFoot, Outcome};
 
 use super::quantity::Quantity;
 use crate::compare::map::Named;
@@ -47,10 +47,11 @@ impl Flank {
         let bound = BoundSurface::new(&of.surface.surface, solve::followed(of.surface), &bindings);
         let surface = AdjustableSurface::new(&bound, &open).expect("a job without errors leaves nothing unbound");
         let values: Vec<f64> = settings.iter().map(|setting| setting.value).collect();
+        let now = surface.at(&values);
         let near = |unknowns: &[f64]| NearFoot { unknowns: unknowns.to_vec(), distance: 0.0 };
         let feet = points.iter().map(|point| {
             let is_solved = point.outcome == Outcome::Solved;
-            let feet = is_solved.then(|| surface.feet(&values, &[point.position], &[near(&point.unknowns)]));
+            let feet = is_solved.then(|| now.feet(&[point.position], &[near(&point.unknowns)]));
             feet?.pop()?
         });
         let flank = Flank { feet: feet.collect(), surface, counts, is_turned };
@@ -102,9 +103,10 @@ impl Flank {
     /// The same numbers with other values of the settings, um; `None` if a point has no foot then, or the middle is not met.
     pub(super) fn with(&self, values: &[f64]) -> Option<Vec<f64>> {
         let (positions, near): (Vec<[f64; 3]>, Vec<NearFoot>) = self.feet.iter().flatten().map(beside).unzip();
-        let turn = if self.is_turned { self.met(values)? } else { 0.0 };
+        let changed = self.surface.at(values);
+        let turn = if self.is_turned { self.met(&changed)? } else { 0.0 };
         let turned: Vec<[f64; 3]> = positions.into_iter().map(|point| about_z(point, -turn)).collect();
-        let mut feet = self.surface.feet(values, &turned, &near).into_iter();
+        let mut feet = changed.feet(&turned, &near).into_iter();
         // a point lies off the changed surface the other way than that lies off the point
         let off = self.feet.iter().map(|foot| match foot {
             Some(_) => feet.next().flatten().map(|foot| Some(-foot.distance)),
@@ -114,12 +116,12 @@ impl Flank {
         Some(numbers.iter().take(if self.is_turned { 6 } else { 5 }).map(|number| 1e3 * number).collect())
     }
 
-    /// The turn of the surface that brings it through the middle.
-    fn met(&self, values: &[f64]) -> Option<f64> {
+    /// The turn of the changed surface that brings it through the middle.
+    fn met(&self, changed: &FootSearch) -> Option<f64> {
         let (position, mut near) = beside(self.middle()?);
         let mut turn = 0.0;
         for _ in 0..MOST_STEPS {
-            let foot = self.surface.feet(values, &[about_z(position, -turn)], std::slice::from_ref(&near)).pop()??;
+            let foot = changed.feet(&[about_z(position, -turn)], std::slice::from_ref(&near)).pop()??;
             if foot.distance.abs() < MET {
                 return Some(turn);
             }

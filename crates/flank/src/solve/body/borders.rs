@@ -157,6 +157,11 @@ impl Joint<'_, '_> {
 /// # Errors
 /// If neighbours share no line.
 fn shared(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Result<Shared, Failure> {
+    // most neighbours share a line on which their rows end, and to find that there is no other end takes long
+    let rows = pieces.map(|piece| piece.ends_of_rows(blank, &ALONG));
+    if let Some((ends, _)) = nearest(&rows).filter(|(_, gap)| *gap <= SAME_LINE) {
+        return Ok(Shared::Ends(ends));
+    }
     let lines = pieces.map(|piece| piece.end_lines(EndsOf::Tool, blank, &ALONG));
     let nearest = nearest(&lines);
     if let Some((ends, _)) = nearest.filter(|(_, gap)| *gap <= SAME_LINE) {

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_expr::Expr;
 use flank_expr::geometry::{Axis, Chain, Step, Vector3};
-use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, SurfacePoint, SurfacePoints};
+use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, Range, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
@@ -194,6 +194,19 @@ impl<'j, 'g> Piece<'j, 'g> {
                 is_whole.then(|| EndLine { unknown, value, points: positions(&points) })
             })
             .collect()
+    }
+
+    /// The same of the unknown that tells rows apart, if it is one of the tool.
+    pub(crate) fn ends_of_rows(&self, blank: &Blank, along: &[f64]) -> Vec<EndLine> {
+        let of_tool = |unknown: &usize| self.of(EndsOf::Tool).any(|other| other == *unknown);
+        let Some(unknown) = self.across_tool(blank).filter(of_tool) else { return Vec::new() };
+        let Range { low, high } = self.bound().ranges()[unknown];
+        let line = |value: f64| {
+            let points = self.on_line((unknown, value), blank, along);
+            let is_whole = points.solved() == along.len();
+            is_whole.then(|| EndLine { unknown, value, points: positions(&points) })
+        };
+        [low, high].into_iter().filter(|value| value.is_finite()).filter_map(line).collect()
     }
 
     /// The values of an unknown at points of a line along the space; `None` where one is no point of the surface.

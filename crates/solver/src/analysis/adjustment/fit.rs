@@ -110,7 +110,7 @@ impl SettingsAdjustment<'_> {
             let is_further = surface > 0 && surface < self.wanted.len();
             let further = turns.get(surface).copied().filter(|_| is_further).unwrap_or_default();
             let points: Vec<[f64; 3]> = wanted.points.iter().map(|point| turned(*point, turns[0] + further)).collect();
-            wanted.surface.feet(settings, &points, near).into_iter().collect::<Option<Vec<Foot>>>()
+            wanted.surface.at(settings).feet(&points, near).into_iter().collect::<Option<Vec<Foot>>>()
         };
         self.surfaces().zip(near).enumerate().map(of).collect()
     }

@@ -15,13 +15,20 @@ use crate::newton::batch::LaneNewton;
 use crate::newton::scalar::{LONGEST_STEP, solve};
 use crate::surface::bound::BoundSurface;
 
-/// A surface that depends on settings, which are given their values later.
+/// A surface that depends on settings, which are given their values later: compiled once, as a [`SurfaceFamily`](crate::SurfaceFamily) is.
 #[derive(Clone, Debug)]
 pub struct AdjustableSurface {
-    /// Unknowns of the surface and a distance along its normal; the point and the settings are parameters.
+    feet: FootSearch,
+}
+
+/// Looks for the feet of points on a surface whose settings have values.
+#[derive(Clone, Debug)]
+pub struct FootSearch {
+    /// Unknowns of the surface and a distance along its normal; the point is a parameter.
     foot: System,
-    /// Of the unknowns and the settings: position, normal, and how far the surface moves along it with each setting.
+    /// Of the unknowns: position, normal, and how far the surface moves along it with each setting.
     at_foot: LaneTape,
+    /// Of the unknowns and the distance.
     ranges: Vec<Range>,
     settings: usize,
 }
@@ -72,65 +79,77 @@ impl AdjustableSurface {
         let reached = bound.position + bound.normal.map(|part| part * distance);
         let residuals = surface.constrained((reached - Vector3(point)).0);
         let unknowns: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain([distance]).collect();
-        let parameters: Vec<Expr<'g>> = point.into_iter().chain(settings.iter().copied()).collect();
         let moved = settings.iter().map(|setting| bound.normal.dot(bound.position.derivative(*setting)));
         let outputs: Vec<Expr<'g>> = bound.position.0.into_iter().chain(bound.normal.0).chain(moved).collect();
-        let inputs: Vec<Expr<'g>> = bound.unknowns.iter().chain(settings).copied().collect();
-        Ok(AdjustableSurface {
-            foot: System::new(&residuals, &unknowns, &parameters)?,
-            at_foot: LaneTape::new(&Tape::new(&outputs, &inputs)?),
-            ranges: surface.ranges().to_vec(),
-            settings: settings.len(),
+        // their values come with the points
+        let open: Vec<(Expr<'g>, f64)> = settings.iter().map(|setting| (*setting, 0.0)).collect();
+        graph.with_settings(&open, || {
+            let foot = System::new(&residuals, &unknowns, &point)?;
+            let at_foot = LaneTape::new(&Tape::new(&outputs, &bound.unknowns)?);
+            // what has other values of the settings shares the machine code
+            foot.translate();
+            at_foot.translate(foot.instructions());
+            let ranges = [surface.ranges(), &[FARTHEST]].concat();
+            Ok(AdjustableSurface { feet: FootSearch { foot, at_foot, ranges, settings: settings.len() } })
         })
     }
 
-    /// The foot of each point, mm, of the surface with these settings; `near` says where they are looked for. `None`
-    /// where no normal within the ranges goes through the point.
+    /// The surface with these values of the settings, in their order.
     ///
     /// # Panics
-    /// If there are not as many starts as points, or not as many settings as the surface has.
-    pub fn feet(&self, settings: &[f64], points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
-        assert_eq!((points.len(), settings.len()), (near.len(), self.settings), "a start for each point");
+    /// If there are not as many.
+    #[must_use]
+    pub fn at(&self, settings: &[f64]) -> FootSearch {
+        let FootSearch { foot, at_foot, ranges, settings: count } = &self.feet;
+        assert_eq!(settings.len(), *count, "a value for each setting");
+        FootSearch {
+            foot: foot.with_settings(settings),
+            at_foot: at_foot.with_settings(settings),
+            ranges: ranges.clone(),
+            settings: *count,
+        }
+    }
+}
+
+impl FootSearch {
+    /// The foot of each point, mm; `near` says where they are looked for. `None` where no normal within the ranges goes through the point.
+    ///
+    /// # Panics
+    /// If there are not as many starts as points.
+    pub fn feet(&self, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
+        assert_eq!(points.len(), near.len(), "a start for each point");
         let tiles = points.par_chunks(LANES).zip(near.par_chunks(LANES));
-        let ranges = [&self.ranges[..], &[FARTHEST]].concat();
-        tiles.flat_map_iter(|(points, near)| self.tile(settings, (points, near), &ranges)).collect()
+        tiles.flat_map_iter(|(points, near)| self.tile(points, near)).collect()
     }
 
     /// As many points as there are lanes at the most, at once; what needs care is solved alone.
-    fn tile(
-        &self,
-        settings: &[f64],
-        (points, near): (&[[f64; 3]], &[NearFoot]),
-        ranges: &[Range],
-    ) -> Vec<Option<Foot>> {
-        let mut newton = LaneNewton::new(&self.foot, ranges);
+    fn tile(&self, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
+        let mut newton = LaneNewton::new(&self.foot, &self.ranges);
         for (lane, (point, near)) in points.iter().zip(near).enumerate() {
-            let start = near.unknowns.iter().copied().chain([near.distance]);
-            newton.put(lane, start, &[point, settings].concat());
+            newton.put(lane, near.unknowns.iter().copied().chain([near.distance]), point);
         }
         newton.run(&vec![true; points.len()], true);
         let mut roots = Vec::with_capacity(points.len());
         for (lane, (point, near)) in points.iter().zip(near).enumerate() {
             let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
             roots.push(match is_near && newton.outcome(lane) == Outcome::Solved {
-                true => Some((0..ranges.len()).map(|k| newton.input(k)[lane]).collect()),
-                false => self.root(settings, (*point, near), ranges),
+                true => Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect()),
+                false => self.root(*point, near),
             });
         }
-        self.placed(settings, roots)
+        self.placed(roots)
     }
 
     /// Unknowns and distance.
-    fn root(&self, settings: &[f64], (point, near): ([f64; 3], &NearFoot), ranges: &[Range]) -> Option<Vec<f64>> {
+    fn root(&self, point: [f64; 3], near: &NearFoot) -> Option<Vec<f64>> {
         let start = [&near.unknowns, &[near.distance][..]].concat();
-        let solution = solve(&self.foot, ranges, &[&point, settings].concat(), &start);
+        let solution = solve(&self.foot, &self.ranges, &point, &start);
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
     }
 
-    fn placed(&self, settings: &[f64], roots: Vec<Option<Vec<f64>>>) -> Vec<Option<Foot>> {
+    fn placed(&self, roots: Vec<Option<Vec<f64>>>) -> Vec<Option<Foot>> {
         let mut evaluator = LaneEvaluator::new(&self.at_foot, self.foot.instructions());
-        let size = self.ranges.len();
-        settings.iter().enumerate().for_each(|(k, value)| evaluator.input(size + k).fill(*value));
+        let size = self.ranges.len() - 1;
         for (lane, root) in roots.iter().enumerate() {
             // where there is none nothing is read
             let known = root.iter().chain(roots.iter().flatten()).next();

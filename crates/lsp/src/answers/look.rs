@@ -6,7 +6,7 @@ use gen_lsp_types::{
     SemanticTokensLegend, SemanticTokensParams,
 };
 
-use crate::commands::lsp::snapshot::Snapshot;
+use crate::snapshot::Snapshot;
 
 const TYPES: [&str; 15] = [
     "machine",

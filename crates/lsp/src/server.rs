@@ -18,6 +18,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
 
+use super::Spelling;
 use super::answers::{browse, edit, look};
 use super::capabilities;
 use super::diagnostics::Findings;
@@ -31,9 +32,9 @@ const SILENCE: Duration = Duration::from_millis(80);
 const PICTURE_SILENCE: Duration = Duration::from_millis(300);
 /// Bytes of stack of a thread that compiles: as many as the main thread of a program has.
 const STACK: usize = 16 << 20;
-/// Threads that answer, and how many of them compile what was changed.
+/// Threads that answer, and those that compile what was changed: one spec after the other, and beside it the one that is typed in.
 const ANSWERING: usize = 2;
-const COMPILING: usize = 1;
+const COMPILING: usize = 2;
 
 /// What the loop hears of.
 #[derive(Debug)]
@@ -68,10 +69,37 @@ enum Phase {
     ShutDown,
 }
 
+/// Threads that work beside the loop, once there is something to do.
+struct Threads {
+    name: &'static str,
+    count: usize,
+    pool: OnceLock<Option<ThreadPool>>,
+}
+
+impl Threads {
+    const fn new(name: &'static str, count: usize) -> Threads {
+        Threads { name, count, pool: OnceLock::new() }
+    }
+
+    /// Does work on one of them; on this thread, where the system lets none start.
+    fn spawn(&self, work: impl FnOnce() + Send + 'static) {
+        let pool = self.pool.get_or_init(|| {
+            let name = self.name;
+            let named = move |number| format!("lsp {name} {number}");
+            ThreadPoolBuilder::new().num_threads(self.count).stack_size(STACK).thread_name(named).build().ok()
+        });
+        match pool {
+            Some(pool) => pool.spawn(work),
+            None => work(),
+        }
+    }
+}
+
 pub(super) struct Server<W> {
     to: W,
     events: SyncSender<Event>,
-    pool: OnceLock<Option<ThreadPool>>,
+    answering: Threads,
+    compilers: Threads,
     phase: Phase,
     documents: Documents,
     analyses: Analyses,
@@ -96,15 +124,17 @@ pub(super) struct Server<W> {
     shows_documents: bool,
     /// Of requests to the editor.
     asked: i32,
+    spelled: Spelling,
 }
 
 impl<W: Write> Server<W> {
-    pub(super) fn new(to: W, events: SyncSender<Event>) -> Server<W> {
+    pub(super) fn new(to: W, events: SyncSender<Event>, spelled: Spelling) -> Server<W> {
         Server {
             to,
-            tasks: Tasks::new(events.clone()),
+            tasks: Tasks::new(events.clone(), spelled),
             events,
-            pool: OnceLock::new(),
+            answering: Threads::new("answer", ANSWERING),
+            compilers: Threads::new("compile", COMPILING),
             phase: Phase::Begun,
             documents: Documents::default(),
             analyses: Analyses::default(),
@@ -123,6 +153,7 @@ impl<W: Write> Server<W> {
             refreshes_lenses: false,
             shows_documents: false,
             asked: 0,
+            spelled,
         }
     }
 
@@ -254,6 +285,7 @@ impl<W: Write> Server<W> {
             influences: Arc::clone(&self.influences),
             outcomes: Arc::clone(&self.outcomes),
             options: self.options,
+            spelled: self.spelled,
         }
     }
 
@@ -320,7 +352,7 @@ impl<W: Write> Server<W> {
             Err(error) => return self.refuse(request.id, ErrorCode::InvalidParams, error.to_string()),
         };
         let (snapshot, events, id) = (self.snapshot(), self.events.clone(), request.id);
-        self.spawn(move || {
+        self.answering.spawn(move || {
             let answered = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| answer(&snapshot, params)));
             let response = match answered {
                 Ok(Ok(result)) => Response::new_ok(id, result),
@@ -331,18 +363,6 @@ impl<W: Write> Server<W> {
             let _ = events.send(Event::Answer { response, about });
         });
         Ok(())
-    }
-
-    /// Does work on another thread; on this one, where the system lets none start.
-    fn spawn(&self, work: impl FnOnce() + Send + 'static) {
-        let pool = self.pool.get_or_init(|| {
-            let named = |number| format!("lsp {number}");
-            ThreadPoolBuilder::new().num_threads(ANSWERING).stack_size(STACK).thread_name(named).build().ok()
-        });
-        match pool {
-            Some(pool) => pool.spawn(work),
-            None => work(),
-        }
     }
 
     fn notification(&mut self, notification: Notification) -> io::Result<()> {
@@ -436,17 +456,21 @@ impl<W: Write> Server<W> {
         }
     }
 
-    /// Compiles what is ready, one spec after the other: whoever types, or asks, does not wait for all that uses a text.
+    /// Compiles what is ready: whoever types does not wait for all that uses a text.
     fn compile(&mut self) {
-        while self.compiling < COMPILING {
+        loop {
             let is_ready = |spec: &Option<PathBuf>| spec.clone().filter(|spec| self.ready.contains(spec));
-            let next = is_ready(&self.edited).or_else(|| is_ready(&self.focused));
+            let edited = is_ready(&self.edited);
+            if self.compiling >= if edited.is_some() { COMPILING } else { 1 } {
+                return;
+            }
+            let next = edited.or_else(|| is_ready(&self.focused));
             let Some(spec) = next.or_else(|| self.ready.first().cloned()) else { return };
             self.ready.remove(&spec);
             let Some(version) = self.documents.get(&spec).map(|document| document.version) else { continue };
             let (snapshot, events) = (self.snapshot(), self.events.clone());
             self.compiling += 1;
-            self.spawn(move || {
+            self.compilers.spawn(move || {
                 let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
                 let _ = events.send(Event::Analysed { spec, version, analysis: analysed.ok() });
             });

@@ -1,43 +1,44 @@
-//! `flank lsp`: the server of editors, on stdin and stdout.
+//! The server of editors, and the page that follows what is typed and saved.
+//!
+//! [`serve`] speaks the language server protocol with one editor: a thread reads, changes are taken in order, answers come from snapshots
+//! of all texts. [`Live`] serves the page of a job on the loopback address.
 
 mod answers;
 mod capabilities;
 mod diagnostics;
 mod documents;
 mod framing;
+mod live;
 mod position;
 mod server;
 mod snapshot;
 mod tasks;
 mod uri;
 
-use std::io::{BufReader, ErrorKind, Read, Write};
+use std::io::{self, BufReader, ErrorKind, Read, Write};
 use std::sync::mpsc::{SyncSender, sync_channel};
 
 use framing::Frame;
 use server::{Event, Server};
 
-use crate::Ending;
-use crate::failure::Failure;
+pub use live::{Live, follow};
+
+/// How a shell spells options that messages name as "option `no_align`".
+pub type Spelling = fn(&str) -> String;
 
 /// Messages that wait at the most: who sends more has to wait.
 const MOST_WAITING: usize = 1024;
 
-/// Serves until the editor ends it or goes away.
+/// Serves the editor that writes to one end and reads from the other, until it ends the conversation or goes away; true if it was ended as
+/// the protocol wants.
 ///
 /// # Errors
-/// If the system lets no thread start.
-pub(crate) fn run() -> Result<Ending, Failure> {
-    let is_clean = serve(std::io::stdin(), std::io::stdout());
-    Ok(if is_clean.map_err(|error| format!("cannot serve: {error}"))? { Ending::Done } else { Ending::Wrong })
-}
-
-/// Serves who writes to one end and reads from the other; true if it was ended as the protocol wants.
-fn serve(from: impl Read + Send + 'static, to: impl Write) -> std::io::Result<bool> {
+/// If the system lets no thread start, or nothing can be written although the editor is there.
+pub fn serve(from: impl Read + Send + 'static, to: impl Write, spelled: Spelling) -> io::Result<bool> {
     let (sender, events) = sync_channel(MOST_WAITING);
     let reading = sender.clone();
     std::thread::Builder::new().name("lsp reader".to_string()).spawn(move || read(from, &reading))?;
-    let mut server = Server::new(to, sender);
+    let mut server = Server::new(to, sender, spelled);
     match server.run(&events) {
         Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(false),
         ended => ended,

@@ -8,7 +8,7 @@ use std::time::Duration;
 use flank::{EvaluatorOptions, Failure, JobSelection, Monitor, page_texts};
 use serde::Serialize;
 
-use crate::spelling::with_flags;
+use crate::Spelling;
 
 /// A spec that is to be shown.
 #[derive(Clone, Debug)]
@@ -48,6 +48,7 @@ pub(super) struct Pages {
     state: Mutex<State>,
     changed: Condvar,
     evaluator: EvaluatorOptions,
+    spelled: Spelling,
 }
 
 impl Pages {
@@ -55,8 +56,8 @@ impl Pages {
     ///
     /// # Errors
     /// If the system lets none start.
-    pub(super) fn start(evaluator: EvaluatorOptions) -> io::Result<Arc<Pages>> {
-        let pages = Arc::new(Pages { state: Mutex::default(), changed: Condvar::new(), evaluator });
+    pub(super) fn start(evaluator: EvaluatorOptions, spelled: Spelling) -> io::Result<Arc<Pages>> {
+        let pages = Arc::new(Pages { state: Mutex::default(), changed: Condvar::new(), evaluator, spelled });
         let own = Arc::clone(&pages);
         std::thread::Builder::new().name("live solver".to_string()).spawn(move || own.work())?;
         Ok(pages)
@@ -120,7 +121,7 @@ impl Pages {
         let mut state = self.state();
         state.told.number += 1;
         state.told.spec = flank::shown_path(wish.selection.file());
-        state.told.error = error.map(|error| with_flags(&error));
+        state.told.error = error.map(|error| (self.spelled)(&error));
         if !texts.is_empty() {
             let asked = wish.job.clone().filter(|job| jobs.contains(job));
             state.told.picture += 1;

@@ -8,13 +8,13 @@ use std::time::{Duration, SystemTime};
 use flank::{Disk, Project, analyse};
 
 /// How often the files are looked at.
-const EVERY: Duration = Duration::from_millis(40);
+const EVERY: Duration = Duration::from_millis(20);
 
 /// What the system says of a file: when it was written, and its size; nothing of one that is not there.
 type Stamp = Option<(SystemTime, u64)>;
 
-/// Shows a spec, and again whenever one of its files changes, until nobody reads what is printed any more.
-pub(super) fn follow(file: &Path, mut show: impl FnMut(Project)) {
+/// Shows a spec, and again whenever one of its files changes, as long as the program runs.
+pub fn follow(file: &Path, mut show: impl FnMut(Project)) {
     let mut watched = vec![file.to_path_buf()];
     loop {
         let project = Project::open(file, Arc::new(Disk));

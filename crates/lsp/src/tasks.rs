@@ -15,8 +15,8 @@ use serde_json::Value;
 use super::documents::Documents;
 use super::server::Event;
 use super::uri;
-use crate::commands::live::Live;
-use crate::spelling::with_flags;
+use crate::Spelling;
+use crate::live::Live;
 
 /// The commands that editors may ask for.
 pub(super) const COMMANDS: [&str; 4] = ["flank.solve", "flank.preview", "flank.report", "flank.explain"];
@@ -74,11 +74,12 @@ pub(super) struct Tasks {
     /// The spec that the page shows.
     shown: Option<PathBuf>,
     job: Option<String>,
+    spelled: Spelling,
 }
 
 impl Tasks {
-    pub(super) fn new(events: SyncSender<Event>) -> Tasks {
-        Tasks { events, live: None, shown: None, job: None }
+    pub(super) fn new(events: SyncSender<Event>, spelled: Spelling) -> Tasks {
+        Tasks { events, live: None, shown: None, job: None, spelled }
     }
 
     /// Starts a command; what it answers at once.
@@ -90,12 +91,13 @@ impl Tasks {
             let found = documents.find(address).map(|(path, _)| path);
             found.ok_or(format!("{address} is not open"))
         };
+        let spelled = self.spelled;
         match asked {
             Asked::Solve { uri, job } => {
                 let (spec, project) = spec(opened(&uri)?, documents);
                 let events = self.events.clone();
                 begin(move || {
-                    let outcome = solve(spec, project, job);
+                    let outcome = solve((spec, project), job, spelled);
                     let _ = events.send(Event::Solved(outcome));
                 })?;
                 Ok(Value::Null)
@@ -104,7 +106,7 @@ impl Tasks {
                 let (spec, project) = spec(opened(&uri)?, documents);
                 let events = self.events.clone();
                 begin(move || {
-                    let (kind, message) = match report(&spec, project, job) {
+                    let (kind, message) = match report((&spec, project), job, spelled) {
                         Ok(file) => (3, format!("wrote {file}")),
                         Err(reason) => (1, reason),
                     };
@@ -116,7 +118,7 @@ impl Tasks {
             Asked::Preview { uri, job } => {
                 let path = opened(&uri)?;
                 if self.live.is_none() {
-                    let live = Live::start(EvaluatorOptions::default());
+                    let live = Live::start(EvaluatorOptions::default(), self.spelled);
                     self.live = Some(live.map_err(|error| format!("cannot serve a page: {error}"))?);
                 }
                 self.job = job;
@@ -163,19 +165,19 @@ fn begin(work: impl FnOnce() + Send + 'static) -> Result<(), String> {
     builder.spawn(work).map(drop).map_err(|error| format!("cannot start: {error}"))
 }
 
-fn in_words(failure: &Failure) -> String {
+fn in_words(failure: &Failure, spelled: Spelling) -> String {
     match failure {
         Failure::Findings(findings) => {
             let [errors, _] = findings.counts();
             let first = findings.list().into_iter().next().map_or(String::new(), |first| first.message);
             format!("{errors} error{}: {first}", if errors == 1 { "" } else { "s" })
         }
-        other => with_flags(&other.to_string()),
+        other => spelled(&other.to_string()),
     }
 }
 
 /// Solves a job without writing anything.
-fn solve(spec: PathBuf, project: Project, job: String) -> Outcome {
+fn solve((spec, project): (PathBuf, Project), job: String, spelled: Spelling) -> Outcome {
     let selection = JobSelection { project, job: Some(job.clone()), set: Vec::new() };
     // where nothing is written, no folder is made that was not there
     let out = spec.parent().unwrap_or(Path::new(".")).to_path_buf();
@@ -208,7 +210,7 @@ fn solve(spec: PathBuf, project: Project, job: String) -> Outcome {
             }
         }
     });
-    let told = solved.map(|()| told.join(", ")).map_err(|failure| in_words(&failure));
+    let told = solved.map(|()| told.join(", ")).map_err(|failure| in_words(&failure, spelled));
     Outcome { spec, job, told, influences: joined(influences) }
 }
 
@@ -225,7 +227,7 @@ fn joined(influences: Vec<(String, String)>) -> Vec<(String, String)> {
 }
 
 /// Writes the report of a job into the folder `build` beside its spec, and names the file.
-fn report(spec: &Path, project: Project, job: String) -> Result<String, String> {
+fn report((spec, project): (&Path, Project), job: String, spelled: Spelling) -> Result<String, String> {
     let out = spec.parent().unwrap_or(Path::new(".")).join("build");
     let request = ReportRequest {
         jobs: JobSelection { project, job: Some(job), set: Vec::new() },
@@ -238,7 +240,7 @@ fn report(spec: &Path, project: Project, job: String) -> Result<String, String> 
     };
     let mut files = Vec::new();
     flank::report(&request, &Unwatched, &mut |result| files.extend(result.files.iter().cloned()))
-        .map_err(|failure| in_words(&failure))?;
+        .map_err(|failure| in_words(&failure, spelled))?;
     files.into_iter().next().ok_or("nothing was written".to_string())
 }
 

@@ -11,7 +11,6 @@ use gen_lsp_types::{
 
 use super::snapshot::Snapshot;
 use super::uri::ERRORS;
-use crate::spelling::with_flags;
 
 /// What was found in open specs, and what the editor has been told.
 #[derive(Debug, Default)]
@@ -77,13 +76,13 @@ impl Findings {
 
 /// A finding with the same code, place and words as on the command line.
 pub(super) fn diagnostic(found: &LocatedFinding, analysis: &Analysis, snapshot: &Snapshot) -> Option<Diagnostic> {
-    let finding = &found.finding;
+    let (finding, spelled) = (&found.finding, snapshot.spelled);
     let message = match &finding.help {
-        Some(help) => format!("{}\nhelp: {}", with_flags(&finding.message), with_flags(help)),
-        None => with_flags(&finding.message),
+        Some(help) => format!("{}\nhelp: {}", spelled(&finding.message), spelled(help)),
+        None => spelled(&finding.message),
     };
     let related = found.notes.iter().filter_map(|(span, text)| {
-        Some(DiagnosticRelatedInformation { location: snapshot.location(analysis, span)?, message: with_flags(text) })
+        Some(DiagnosticRelatedInformation { location: snapshot.location(analysis, span)?, message: spelled(text) })
     });
     let related: Vec<DiagnosticRelatedInformation> = related.collect();
     let is_error = finding.severity == Severity::Error;

@@ -7,6 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use flank::{Analysis, Project, TextSpan, analyse};
 use gen_lsp_types::{Location, Position, Range, Uri};
 
+use super::Spelling;
 use super::documents::{Document, Documents};
 use super::position::Lines;
 
@@ -56,6 +57,7 @@ pub(super) struct Snapshot {
     /// What stands beside the lenses of jobs, by path and job.
     pub(super) outcomes: Arc<BTreeMap<(PathBuf, String), String>>,
     pub(super) options: Options,
+    pub(super) spelled: Spelling,
 }
 
 /// What the editor has set.

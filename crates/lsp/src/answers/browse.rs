@@ -9,8 +9,8 @@ use gen_lsp_types::{
     MarkupContent, MarkupKind, ReferenceParams, SymbolKind,
 };
 
-use crate::commands::lsp::position::Lines;
-use crate::commands::lsp::snapshot::Snapshot;
+use crate::position::Lines;
+use crate::snapshot::Snapshot;
 
 pub(crate) fn hover(snapshot: &Snapshot, params: HoverParams) -> Option<Hover> {
     let at = params.text_document_position_params;

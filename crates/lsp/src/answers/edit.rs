@@ -11,10 +11,10 @@ use gen_lsp_types::{
 };
 
 use super::browse::all_references;
-use crate::commands::lsp::diagnostics::diagnostic;
-use crate::commands::lsp::position::Lines;
-use crate::commands::lsp::snapshot::{Opened, Snapshot};
-use crate::commands::lsp::uri::{ERRORS, LIBRARY};
+use crate::diagnostics::diagnostic;
+use crate::position::Lines;
+use crate::snapshot::{Opened, Snapshot};
+use crate::uri::{ERRORS, LIBRARY};
 
 pub(crate) fn completion(snapshot: &Snapshot, params: CompletionParams) -> Option<CompletionResponse> {
     let at = params.text_document_position_params;
@@ -209,7 +209,7 @@ fn check_renamed(snapshot: &Snapshot, edits: &[Edit]) -> Result<(), String> {
         own.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
         own.iter().for_each(|edit| text.replace_range(edit.span.start..edit.span.end, &edit.replacement));
         let uri = snapshot.documents.uri_of(&file);
-        renamed.documents.open(crate::commands::lsp::documents::Document { uri, version: 0, text: text.into() });
+        renamed.documents.open(crate::documents::Document { uri, version: 0, text: text.into() });
     }
     for path in snapshot.documents.paths() {
         let count = |of: &Snapshot| of.analysis(path).findings().len();
