@@ -1,6 +1,5 @@
 //! Grids of points: one is looked for, the others follow from neighbour to neighbour.
 
-use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +10,6 @@ use crate::Outcome;
 use crate::continuation::field::{Along, Field, Lines, Strip};
 use crate::continuation::lattice::Ways;
 use crate::continuation::line::{Midpoint, denser, divided_difference, lattice, levels};
-use crate::continuation::path::Path;
 use crate::equations::solution::{Range, Solution};
 use crate::equations::system::{Evaluation, System};
 use crate::newton::batch::LaneNewton;
@@ -172,11 +170,11 @@ impl<'s> Grid<'s> {
         let newton = solvers.newton();
         self.settle(&mut field, newton, &[anchor]);
         let by_hand = match self.is_careful {
-            true => VecDeque::from([anchor]),
+            true => vec![anchor],
             false => self.spread_in_lanes(&mut field, newton, vec![anchor], ([rows.as_slice(), &columns], Ways::All)),
         };
         if !by_hand.is_empty() {
-            let solved = self.spread(&mut field, by_hand, &rows, &columns);
+            let solved = self.spread(&mut field, by_hand, [&rows, &columns]);
             self.settle(&mut field, newton, &solved);
         }
         // what follows from no start may have its lines along the rows, on which the first target is the same more often than not
@@ -213,10 +211,10 @@ impl<'s> Grid<'s> {
                 let mut edge = self.edge_of_roots(field, beside.clone());
                 if !self.is_careful && !edge.is_empty() {
                     let lattice = ([rows.as_slice(), &columns], Ways::Straight);
-                    self.spread_in_lanes(field, solvers.newton(), edge.into(), lattice);
+                    self.spread_in_lanes(field, solvers.newton(), edge, lattice);
                     edge = self.edge_of_roots(field, beside);
                 }
-                self.spread(field, edge, &rows, &columns);
+                self.spread(field, edge, [&rows, &columns]);
             }
         }
         field.place_loose(&mut solvers.careful);
@@ -332,7 +330,7 @@ impl<'s> Grid<'s> {
     }
 
     /// Roots beside points that are not known to be roots, both in some of the rows.
-    fn edge_of_roots(&self, field: &Field, rows: std::ops::Range<usize>) -> VecDeque<usize> {
+    fn edge_of_roots(&self, field: &Field, rows: std::ops::Range<usize>) -> Vec<usize> {
         let beside = |point: usize| {
             let (i, j) = (point / self.columns, point % self.columns);
             let vertical = [i.checked_sub(1), Some(i + 1)].map(|i| i.filter(|i| rows.contains(i)).map(|i| (i, j)));
@@ -341,58 +339,6 @@ impl<'s> Grid<'s> {
         };
         let is_edge = |&point: &usize| field.is_root(point) && beside(point).any(|other| !field.is_root(other));
         (rows.start * self.columns..rows.end * self.columns).filter(is_edge).collect()
-    }
-
-    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns, along
-    /// the branch: never across a place where the Jacobian has no inverse. There a sheet ends at a fold, with another sheet
-    /// behind it, or crosses another branch. Gives the points it has solved.
-    fn spread(
-        &mut self,
-        field: &mut Field,
-        mut queue: VecDeque<usize>,
-        rows: &[usize],
-        columns: &[usize],
-    ) -> Vec<usize> {
-        let mut solved = Vec::new();
-        let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
-        while let Some(point) = queue.pop_front() {
-            let (i, j) = (point / self.columns, point % self.columns);
-            let (at_row, at_column) = (place(rows, i), place(columns, j));
-            for (di, dj) in [(0, 1), (0, -1), (1, 0), (-1, 0)] {
-                let beside = |di: isize, dj: isize| {
-                    let row = rows.get(at_row.checked_add_signed(di)?)?;
-                    Some((*row, *columns.get(at_column.checked_add_signed(dj)?)?))
-                };
-                let index = |(i, j): (usize, usize)| i * self.columns + j;
-                let Some(to) = beside(di, dj) else { continue };
-                let next = index(to);
-                if field.is_root(next) {
-                    continue;
-                }
-                let near: Vec<f64> = field.unknowns(point).collect();
-                let far = beside(-di, -dj).filter(|far| field.is_root(index(*far)));
-                let start = far.map_or_else(
-                    || near.clone(),
-                    |far| {
-                        let gap = |other: (usize, usize)| (other.0.abs_diff(i) + other.1.abs_diff(j)) as f64;
-                        extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
-                    },
-                );
-                let ways = [self.targets[point], self.targets[next]];
-                let mut path = Path::new(&mut self.evaluation, self.ranges, ways);
-                let mut solution = path.follow(near, start);
-                self.effort.evaluations += path.evaluations;
-                if let Some(earlier) = field.solution(next) {
-                    solution = earlier.better(solution);
-                }
-                field.put(next, &solution);
-                if solution.is_root() {
-                    queue.push_back(next);
-                    solved.push(next);
-                }
-            }
-        }
-        solved
     }
 }
 
