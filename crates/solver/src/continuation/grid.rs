@@ -23,6 +23,8 @@ use crate::roots::Undecided;
 pub(crate) const ASTRAY: f64 = 0.75;
 /// Places on a line that are further apart than this get others between them before strips solve what is left of the line.
 const WIDEST: usize = LANES / 2;
+/// How many lines apart those are that lanes follow where strips have left points over.
+const GAPS: [usize; 4] = [16, 8, 4, 2];
 /// Grids with fewer points are not worth a second thread.
 const SHARED: usize = 4096;
 
@@ -174,8 +176,7 @@ impl<'s> Grid<'s> {
             false => self.spread_in_lanes(&mut field, newton, vec![anchor], ([rows.as_slice(), &columns], Ways::All)),
         };
         if !by_hand.is_empty() {
-            let solved = self.spread(&mut field, by_hand, [&rows, &columns]);
-            self.settle(&mut field, newton, &solved);
+            self.spread(&mut field, newton, &by_hand, [&rows, &columns]);
         }
         // what follows from no start may have its lines along the rows, on which the first target is the same more often than not
         let lines = if newton.has_all_given() { Lines::Rows } else { self.smoother(&field, [&rows, &columns]) };
@@ -195,9 +196,31 @@ impl<'s> Grid<'s> {
             let ((along, evaluations), down) = if is_shared { rayon::join(refine, down) } else { (refine(), down()) };
             self.effort.evaluations += evaluations;
             self.refine_strips(&mut field, solvers, along.as_ref(), &down);
+            if !(has_all_given || self.is_careful) {
+                self.refine_between(&mut field, solvers, lines);
+            }
         }
         self.finish(&mut field, solvers, 0..self.rows);
         field
+    }
+
+    /// What strips have left over, as lines were too far apart: lanes follow lines closer and closer together, each from its neighbours, and
+    /// strips solve what lies between these.
+    fn refine_between(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, lines: Lines) {
+        let (rows, columns): (Vec<usize>, Vec<usize>) = ((0..self.rows).collect(), (0..self.columns).collect());
+        let (all, width) = (if lines == Lines::Rows { &rows } else { &columns }, self.columns);
+        for gap in GAPS.into_iter().filter(|gap| *gap < all.len()) {
+            if field.is_complete() {
+                return;
+            }
+            let last = all.len() - 1;
+            let some: Vec<usize> = (0..last).step_by(gap).chain([last]).collect();
+            let lattice: [&[usize]; 2] = if lines == Lines::Rows { [&some, &columns] } else { [&rows, &some] };
+            let points = lattice[0].iter().flat_map(|i| lattice[1].iter().map(move |j| i * width + j));
+            let known: Vec<usize> = points.filter(|point| field.is_root(*point)).collect();
+            self.spread_in_lanes(field, solvers.newton(), known, (lattice, Ways::Straight));
+            self.refine_strips(field, solvers, None, &levels(all, &some));
+        }
     }
 
     /// What is left of some rows: from solved points beside it in lanes, then by the careful path.
@@ -214,7 +237,7 @@ impl<'s> Grid<'s> {
                     self.spread_in_lanes(field, solvers.newton(), edge, lattice);
                     edge = self.edge_of_roots(field, beside);
                 }
-                self.spread(field, edge, [&rows, &columns]);
+                self.spread(field, solvers.newton(), &edge, [&rows, &columns]);
             }
         }
         field.place_loose(&mut solvers.careful);
@@ -243,7 +266,7 @@ impl<'s> Grid<'s> {
     }
 
     /// The determinants at points by the careful path, which does not give them.
-    fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, points: &[usize]) {
+    pub(crate) fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, points: &[usize]) {
         let roots: Vec<usize> = points.iter().copied().filter(|point| field.is_root(*point)).collect();
         for block in roots.chunks(LANES) {
             for (lane, &point) in block.iter().enumerate() {

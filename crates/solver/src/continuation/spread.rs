@@ -6,12 +6,16 @@ use flank_expr::LANES;
 
 use crate::continuation::field::Field;
 use crate::continuation::grid::{Grid, extrapolated};
+use crate::continuation::lattice::Ways;
 use crate::continuation::path::Path;
 use crate::equations::solution::Solution;
+use crate::newton::batch::LaneNewton;
 use crate::newton::multistart::Lanes;
 
-/// Ways that are followed before any of their ends counts.
-const TOGETHER: usize = 1024;
+/// Ways that are followed before lanes go on from where they lead, as long as that solves others of them; twice as many each time that
+/// it does not.
+const FEW: usize = 8;
+const MANY: usize = 1024;
 
 /// A way between points beside each other on a lattice.
 struct Attempt {
@@ -24,35 +28,47 @@ struct Attempt {
 impl Grid<'_> {
     /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns, along
     /// the branch: never across a place where the Jacobian has no inverse. There a sheet ends at a fold, with another sheet
-    /// behind it, or crosses another branch. Gives the points it has solved.
-    pub(crate) fn spread(&mut self, field: &mut Field, mut wave: Vec<usize>, lattice: [&[usize]; 2]) -> Vec<usize> {
-        let mut solved = Vec::new();
-        while !wave.is_empty() {
-            let (mut attempts, first) = (self.attempts(field, &wave, lattice), solved.len());
-            while !attempts.is_empty() {
-                let mut tried = HashSet::new();
-                let (now, mut later): (Vec<Attempt>, Vec<Attempt>) =
-                    attempts.into_iter().partition(|attempt| tried.insert(attempt.to));
-                for attempts in now.chunks(TOGETHER) {
-                    let found = self.followed(field, attempts);
-                    for (Attempt { to, .. }, mut solution) in attempts.iter().zip(found) {
-                        if let Some(earlier) = field.solution(*to) {
-                            solution = earlier.better(solution);
-                        }
-                        field.put(*to, &solution);
-                        solved.extend(solution.is_root().then_some(*to));
-                    }
+    /// behind it, or crosses another branch. A few ways, far from each other, are followed first: lanes may go on from there.
+    pub(crate) fn spread(
+        &mut self,
+        field: &mut Field,
+        newton: &mut LaneNewton<'_>,
+        edge: &[usize],
+        lattice: [&[usize]; 2],
+    ) {
+        let (mut known, mut together) = (HashSet::new(), FEW);
+        let mut waiting = self.attempts(field, edge, lattice, &mut known);
+        while !waiting.is_empty() {
+            let attempts = picked(&mut waiting, together);
+            let found = self.followed(field, &attempts);
+            let mut edge = Vec::new();
+            for (Attempt { to, .. }, mut solution) in attempts.iter().zip(found) {
+                if let Some(earlier) = field.solution(*to) {
+                    solution = earlier.better(solution);
                 }
-                later.retain(|attempt| !field.is_root(attempt.to));
-                attempts = later;
+                field.put(*to, &solution);
+                edge.extend(solution.is_root().then_some(*to));
             }
-            wave = solved[first..].to_vec();
+            self.settle(field, newton, &edge);
+            if !self.is_careful {
+                let further = self.spread_in_lanes(field, newton, edge.clone(), (lattice, Ways::Straight));
+                edge.extend(further);
+            }
+            let before = waiting.len();
+            waiting.retain(|attempt| !field.is_root(attempt.to));
+            together = if before - waiting.len() >= attempts.len() { FEW } else { MANY.min(2 * together) };
+            waiting.extend(self.attempts(field, &edge, lattice, &mut known));
         }
-        solved
     }
 
-    /// All ways from the points of a wave to points that are no roots, each once.
-    fn attempts(&self, field: &Field, wave: &[usize], [rows, columns]: [&[usize]; 2]) -> Vec<Attempt> {
+    /// The ways from some points to points that are no roots, without those that are known.
+    fn attempts(
+        &self,
+        field: &Field,
+        edge: &[usize],
+        [rows, columns]: [&[usize]; 2],
+        known: &mut HashSet<[usize; 2]>,
+    ) -> Vec<Attempt> {
         let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
         let of = |&from: &usize| {
             let (row, column) = (place(rows, from / self.columns), place(columns, from % self.columns));
@@ -63,9 +79,8 @@ impl Grid<'_> {
             let ways = [(0, 1), (0, -1), (1, 0), (-1, 0)];
             ways.map(|(di, dj)| Some(Attempt { from, to: beside(di, dj)?, behind: beside(-di, -dj) }))
         };
-        let mut seen = HashSet::new();
-        let points = wave.iter().filter(|point| seen.insert(**point));
-        points.flat_map(of).flatten().filter(|attempt| !field.is_root(attempt.to)).collect()
+        let all = edge.iter().flat_map(of).flatten();
+        all.filter(|Attempt { from, to, .. }| !field.is_root(*to) && known.insert([*from, *to])).collect()
     }
 
     /// What ways lead to.
@@ -110,4 +125,14 @@ impl Grid<'_> {
             .map_or_else(|| near.clone(), |behind| extrapolated(&near, field.unknowns(behind), gap(*to) / gap(behind)));
         Path::new(self.ranges, [self.targets[*from], self.targets[*to]], near, start)
     }
+}
+
+/// Takes some attempts out, evenly spread, no two of them for one point.
+fn picked(waiting: &mut Vec<Attempt>, count: usize) -> Vec<Attempt> {
+    let (step, mut number, mut points) = (waiting.len().div_ceil(count), 0, HashSet::new());
+    let is_meant = |attempt: &mut Attempt| {
+        number += 1;
+        (number - 1) % step == 0 && points.insert(attempt.to)
+    };
+    waiting.extract_if(.., is_meant).collect()
 }
