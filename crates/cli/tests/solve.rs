@@ -377,6 +377,8 @@ fn branches_are_listed_as_json() {
     assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
     let table: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("JSON");
     assert_eq!(table["schema"], "flank.solve/3");
+    let by = table["instructions"].as_str().unwrap();
+    assert!(["avx512", "avx2", "interpreted"].contains(&by), "{by}");
     let found = table["surfaces"][0]["branches"]["found"].as_array().unwrap();
     assert!(found.len() > 1, "{found:?}");
     for branch in found {

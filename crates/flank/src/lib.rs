@@ -148,9 +148,9 @@ pub use solve::body::result::{
 };
 pub use solve::body::solid;
 pub use solve::result::{
-    BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, LineResult, MissedRequirement, OpenRanges,
-    ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, SurfaceResult, ToolPositions,
-    UsualChange,
+    BranchPoint, BranchSearch, Certified, CutHeights, FieldExtent, Instructions, LineResult, MissedRequirement,
+    OpenRanges, ParameterInfluence, PointSummary, SensitivityTable, SmoothFace, SolveResult, SurfaceResult,
+    ToolPositions, UsualChange,
 };
 pub use solve::solve;
 pub use solve::status::Status;

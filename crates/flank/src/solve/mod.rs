@@ -44,7 +44,7 @@ pub(crate) use self::dataset::{dataset, header};
 use self::limits::Line;
 pub(crate) use self::options::SolveOptions;
 pub(crate) use self::points::{patch, unit};
-use self::result::SolveResult;
+use self::result::{Instructions, SolveResult};
 pub(crate) use self::sampled::{points, solve_surface};
 use self::solved::Solved;
 use self::step::Smooth;
@@ -131,6 +131,7 @@ fn solved_job(
         lines,
         faces: step::results(&faces),
         files,
+        instructions: Instructions::of(wanted.session.instructions()),
         remarks: origin.located(&[job], remarks.concat()),
         not_done: origin.located(&[job], not_done),
         timing: Timing { points, elapsed: start.elapsed() },

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 
 use flank_export::fixed;
+use flank_expr::InstructionSet;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -30,12 +31,36 @@ pub struct SolveResult {
     pub faces: Vec<SmoothFace>,
     /// Files written, in their order.
     pub files: Vec<String>,
+    /// What the points were computed by.
+    pub instructions: Instructions,
     /// What is to be known beside it, as stderr has it.
     pub remarks: Vec<Remark>,
     /// What was asked for and not done, as stderr has it; the exit code is 3 unless it is empty.
     pub not_done: Vec<NotDone>,
     #[serde(skip)]
     pub(super) timing: Timing,
+}
+
+/// What many points are computed by at once. It changes no bit of them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Instructions {
+    /// Machine code made from the equations, eight points in a register.
+    Avx512,
+    /// Machine code made from the equations, four points in a register.
+    Avx2,
+    /// Operations gone through one by one, each for a block of points: without machine code, or on another kind of processor.
+    Interpreted,
+}
+
+impl Instructions {
+    pub(super) fn of(set: InstructionSet) -> Instructions {
+        match set.machine_code() {
+            Some(8) => Instructions::Avx512,
+            Some(_) => Instructions::Avx2,
+            None => Instructions::Interpreted,
+        }
+    }
 }
 
 /// The points of a surface or of a line, counted.

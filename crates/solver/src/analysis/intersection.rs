@@ -5,7 +5,7 @@ use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
 
 use crate::equations::solution::{Outcome, Range, Solution, distance};
 use crate::equations::system::{Evaluation, System};
-use crate::newton::scalar::{inverse_times, solve_with};
+use crate::newton::scalar::{determinant, inverse_times, solve_with};
 use crate::surface::SurfaceProblem;
 use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
@@ -137,7 +137,7 @@ impl Intersection {
         let mut evaluation = self.own.evaluation(&[]);
         let [here, there] = [point, *nearest].map(|point| {
             evaluation.at(&point.unknowns);
-            evaluation.determinant(ranges)
+            determinant(&evaluation, ranges)
         });
         here * there >= 0.0
     }

@@ -379,9 +379,9 @@ impl Grid<'_> {
         if from == to {
             return Some(root.clone());
         }
-        let mut path = Path::new(&mut self.evaluation, self.ranges, [from, to]);
-        let solution = path.follow(root.unknowns.clone(), root.unknowns.clone());
-        self.effort.evaluations += path.evaluations;
+        let path = Path::new(self.ranges, [from, to], root.unknowns.clone(), root.unknowns.clone());
+        let (solution, evaluations) = path.follow(&mut self.evaluation);
+        self.effort.evaluations += evaluations;
         solution.is_root().then_some(solution)
     }
 

@@ -1,6 +1,5 @@
 //! Grids of points: one is looked for, the others follow from neighbour to neighbour.
 
-use std::collections::VecDeque;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
@@ -11,7 +10,6 @@ use crate::Outcome;
 use crate::continuation::field::{Along, Field, Lines, Strip};
 use crate::continuation::lattice::Ways;
 use crate::continuation::line::{Midpoint, denser, divided_difference, lattice, levels};
-use crate::continuation::path::Path;
 use crate::equations::solution::{Range, Solution};
 use crate::equations::system::{Evaluation, System};
 use crate::newton::batch::LaneNewton;
@@ -25,6 +23,8 @@ use crate::roots::Undecided;
 pub(crate) const ASTRAY: f64 = 0.75;
 /// Places on a line that are further apart than this get others between them before strips solve what is left of the line.
 const WIDEST: usize = LANES / 2;
+/// How many lines apart those are that lanes follow where strips have left points over.
+const GAPS: [usize; 4] = [16, 8, 4, 2];
 /// Grids with fewer points are not worth a second thread.
 const SHARED: usize = 4096;
 
@@ -172,12 +172,11 @@ impl<'s> Grid<'s> {
         let newton = solvers.newton();
         self.settle(&mut field, newton, &[anchor]);
         let by_hand = match self.is_careful {
-            true => VecDeque::from([anchor]),
+            true => vec![anchor],
             false => self.spread_in_lanes(&mut field, newton, vec![anchor], ([rows.as_slice(), &columns], Ways::All)),
         };
         if !by_hand.is_empty() {
-            let solved = self.spread(&mut field, by_hand, &rows, &columns);
-            self.settle(&mut field, newton, &solved);
+            self.spread(&mut field, newton, &by_hand, [&rows, &columns]);
         }
         // what follows from no start may have its lines along the rows, on which the first target is the same more often than not
         let lines = if newton.has_all_given() { Lines::Rows } else { self.smoother(&field, [&rows, &columns]) };
@@ -197,9 +196,31 @@ impl<'s> Grid<'s> {
             let ((along, evaluations), down) = if is_shared { rayon::join(refine, down) } else { (refine(), down()) };
             self.effort.evaluations += evaluations;
             self.refine_strips(&mut field, solvers, along.as_ref(), &down);
+            if !(has_all_given || self.is_careful) {
+                self.refine_between(&mut field, solvers, lines);
+            }
         }
         self.finish(&mut field, solvers, 0..self.rows);
         field
+    }
+
+    /// What strips have left over, as lines were too far apart: lanes follow lines closer and closer together, each from its neighbours, and
+    /// strips solve what lies between these.
+    fn refine_between(&mut self, field: &mut Field, solvers: &mut Solvers<'_>, lines: Lines) {
+        let (rows, columns): (Vec<usize>, Vec<usize>) = ((0..self.rows).collect(), (0..self.columns).collect());
+        let (all, width) = (if lines == Lines::Rows { &rows } else { &columns }, self.columns);
+        for gap in GAPS.into_iter().filter(|gap| *gap < all.len()) {
+            if field.is_complete() {
+                return;
+            }
+            let last = all.len() - 1;
+            let some: Vec<usize> = (0..last).step_by(gap).chain([last]).collect();
+            let lattice: [&[usize]; 2] = if lines == Lines::Rows { [&some, &columns] } else { [&rows, &some] };
+            let points = lattice[0].iter().flat_map(|i| lattice[1].iter().map(move |j| i * width + j));
+            let known: Vec<usize> = points.filter(|point| field.is_root(*point)).collect();
+            self.spread_in_lanes(field, solvers.newton(), known, (lattice, Ways::Straight));
+            self.refine_strips(field, solvers, None, &levels(all, &some));
+        }
     }
 
     /// What is left of some rows: from solved points beside it in lanes, then by the careful path.
@@ -213,10 +234,10 @@ impl<'s> Grid<'s> {
                 let mut edge = self.edge_of_roots(field, beside.clone());
                 if !self.is_careful && !edge.is_empty() {
                     let lattice = ([rows.as_slice(), &columns], Ways::Straight);
-                    self.spread_in_lanes(field, solvers.newton(), edge.into(), lattice);
+                    self.spread_in_lanes(field, solvers.newton(), edge, lattice);
                     edge = self.edge_of_roots(field, beside);
                 }
-                self.spread(field, edge, &rows, &columns);
+                self.spread(field, solvers.newton(), &edge, [&rows, &columns]);
             }
         }
         field.place_loose(&mut solvers.careful);
@@ -245,7 +266,7 @@ impl<'s> Grid<'s> {
     }
 
     /// The determinants at points by the careful path, which does not give them.
-    fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, points: &[usize]) {
+    pub(crate) fn settle(&mut self, field: &mut Field, newton: &mut LaneNewton<'_>, points: &[usize]) {
         let roots: Vec<usize> = points.iter().copied().filter(|point| field.is_root(*point)).collect();
         for block in roots.chunks(LANES) {
             for (lane, &point) in block.iter().enumerate() {
@@ -332,7 +353,7 @@ impl<'s> Grid<'s> {
     }
 
     /// Roots beside points that are not known to be roots, both in some of the rows.
-    fn edge_of_roots(&self, field: &Field, rows: std::ops::Range<usize>) -> VecDeque<usize> {
+    fn edge_of_roots(&self, field: &Field, rows: std::ops::Range<usize>) -> Vec<usize> {
         let beside = |point: usize| {
             let (i, j) = (point / self.columns, point % self.columns);
             let vertical = [i.checked_sub(1), Some(i + 1)].map(|i| i.filter(|i| rows.contains(i)).map(|i| (i, j)));
@@ -341,58 +362,6 @@ impl<'s> Grid<'s> {
         };
         let is_edge = |&point: &usize| field.is_root(point) && beside(point).any(|other| !field.is_root(other));
         (rows.start * self.columns..rows.end * self.columns).filter(is_edge).collect()
-    }
-
-    /// From roots to everything that can be reached from neighbour to neighbour on the lattice of some rows and columns, along
-    /// the branch: never across a place where the Jacobian has no inverse. There a sheet ends at a fold, with another sheet
-    /// behind it, or crosses another branch. Gives the points it has solved.
-    fn spread(
-        &mut self,
-        field: &mut Field,
-        mut queue: VecDeque<usize>,
-        rows: &[usize],
-        columns: &[usize],
-    ) -> Vec<usize> {
-        let mut solved = Vec::new();
-        let place = |places: &[usize], index: usize| places.binary_search(&index).expect("a point of the lattice");
-        while let Some(point) = queue.pop_front() {
-            let (i, j) = (point / self.columns, point % self.columns);
-            let (at_row, at_column) = (place(rows, i), place(columns, j));
-            for (di, dj) in [(0, 1), (0, -1), (1, 0), (-1, 0)] {
-                let beside = |di: isize, dj: isize| {
-                    let row = rows.get(at_row.checked_add_signed(di)?)?;
-                    Some((*row, *columns.get(at_column.checked_add_signed(dj)?)?))
-                };
-                let index = |(i, j): (usize, usize)| i * self.columns + j;
-                let Some(to) = beside(di, dj) else { continue };
-                let next = index(to);
-                if field.is_root(next) {
-                    continue;
-                }
-                let near: Vec<f64> = field.unknowns(point).collect();
-                let far = beside(-di, -dj).filter(|far| field.is_root(index(*far)));
-                let start = far.map_or_else(
-                    || near.clone(),
-                    |far| {
-                        let gap = |other: (usize, usize)| (other.0.abs_diff(i) + other.1.abs_diff(j)) as f64;
-                        extrapolated(&near, field.unknowns(index(far)), gap(to) / gap(far))
-                    },
-                );
-                let ways = [self.targets[point], self.targets[next]];
-                let mut path = Path::new(&mut self.evaluation, self.ranges, ways);
-                let mut solution = path.follow(near, start);
-                self.effort.evaluations += path.evaluations;
-                if let Some(earlier) = field.solution(next) {
-                    solution = earlier.better(solution);
-                }
-                field.put(next, &solution);
-                if solution.is_root() {
-                    queue.push_back(next);
-                    solved.push(next);
-                }
-            }
-        }
-        solved
     }
 }
 

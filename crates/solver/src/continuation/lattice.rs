@@ -3,7 +3,7 @@
 #![allow(clippy::needless_range_loop)] // several arrays are gone through in step
 
 use std::array;
-use std::collections::{HashSet, VecDeque};
+use std::collections::HashSet;
 
 use flank_expr::LANES;
 
@@ -37,8 +37,8 @@ impl Grid<'_> {
         newton: &mut LaneNewton<'_>,
         mut wave: Vec<usize>,
         (lattice, ways): ([&[usize]; 2], Ways),
-    ) -> VecDeque<usize> {
-        let mut unfinished = VecDeque::new();
+    ) -> Vec<usize> {
+        let mut unfinished = Vec::new();
         while !wave.is_empty() {
             let leaps = self.leaps(field, &wave, lattice, ways);
             let mut next = Vec::new();

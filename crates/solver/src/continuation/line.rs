@@ -50,20 +50,22 @@ pub(crate) fn denser(known: &[usize], widest: usize) -> Vec<usize> {
     places
 }
 
-/// The points of a line in the order in which they follow from the known ones: all of a level depend on earlier levels only.
+/// The points of a line between the known ones, in the order in which they follow from these: all of a level depend on earlier levels only.
 /// `places` tells where on the line each of them stands.
 pub(crate) fn levels(places: &[usize], known: &[usize]) -> Vec<Vec<Midpoint>> {
     let mut known = known.to_vec();
     let mut levels = Vec::new();
-    while known.len() < places.len() {
+    loop {
         let gaps = known.windows(2).enumerate().filter(|(_, gap)| gap[1] - gap[0] > 1);
         let level: Vec<Midpoint> = gaps.map(|(k, gap)| midpoint(places, &known, k, [gap[0], gap[1]])).collect();
+        if level.is_empty() {
+            return levels;
+        }
         known.extend(level.iter().map(|point| point.at));
         // two rows in order, one after the other
         known.sort();
         levels.push(level);
     }
-    levels
 }
 
 /// The point between `known[k]` and `known[k + 1]`.

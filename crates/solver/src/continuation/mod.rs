@@ -9,5 +9,6 @@ pub(crate) mod lattice;
 pub(crate) mod line;
 pub(crate) mod path;
 pub(crate) mod reach;
+pub(crate) mod spread;
 pub(crate) mod survey;
 pub(crate) mod verdicts;

@@ -3,9 +3,9 @@
 use crate::continuation::field::SAME_DETERMINANT;
 use crate::continuation::grid::{ASTRAY, extrapolated};
 use crate::equations::solution::{NEAR, Outcome, Range, Solution, distance};
-use crate::equations::system::Evaluation;
+use crate::equations::system::{Conditions, Evaluation, Linearized};
 use crate::equations::tolerance::CLEAR;
-use crate::newton::scalar::solve_with;
+use crate::newton::scalar::{Descent, determinant, scaled_determinant, tangent_point};
 
 /// A step that fails is followed by one of this share of it.
 const SHORTER: f64 = 0.25;
@@ -20,11 +20,20 @@ const MOST_TRIES: usize = 48;
 /// falls to zero and rises again: of a step across, however short, it lies lower.
 const OFF_MEAN: f64 = 0.25;
 
-/// A way between two pairs of targets.
-pub(crate) struct Path<'p, 's> {
-    evaluation: &'p mut Evaluation<'s>,
-    ranges: &'p [Range],
+/// A way between two pairs of targets along the branch of a root, told residuals and Jacobian where it asks for them: many ways can
+/// be followed at once.
+pub(crate) struct Path<'r> {
+    ranges: &'r [Range],
     ways: [[f64; 2]; 2],
+    /// How far it has come.
+    at: Place,
+    /// Where the next step leads, and a guess of the root there.
+    share: f64,
+    guess: Vec<f64>,
+    /// The last attempt that failed; at the end what was found.
+    last: Solution,
+    tries: usize,
+    stage: Stage<'r>,
     pub(crate) evaluations: u64,
 }
 
@@ -37,50 +46,124 @@ struct Place {
     determinant: f64,
 }
 
-impl<'p, 's> Path<'p, 's> {
-    pub(crate) fn new(evaluation: &'p mut Evaluation<'s>, ranges: &'p [Range], ways: [[f64; 2]; 2]) -> Path<'p, 's> {
-        Path { evaluation, ranges, ways, evaluations: 0 }
+/// Where a step has led.
+struct End {
+    solution: Solution,
+    determinant: f64,
+}
+
+/// What residuals and Jacobian are asked for for.
+enum Stage<'r> {
+    /// The determinant where the way begins.
+    Begin,
+    /// A root at the end of a step.
+    Step(Descent<'r>),
+    /// The tangent where the step begins, at the targets of its end.
+    There(End),
+    /// The tangent at the end, at the targets where the step begins; how far the other one leads, and whether it leads there.
+    Back(End, (f64, bool)),
+    /// A root halfway.
+    Halfway(End, Descent<'r>),
+    /// Whether a fold is near where the way ends.
+    Arrival(Solution),
+    /// The root there once more: near a fold the next step still moves it.
+    Again(Descent<'r>),
+    Nothing,
+}
+
+impl<'r> Path<'r> {
+    /// From the unknowns of a root where the way begins; `start` is tried first as a guess of the root at its end.
+    pub(crate) fn new(ranges: &'r [Range], ways: [[f64; 2]; 2], from: Vec<f64>, start: Vec<f64>) -> Path<'r> {
+        Path {
+            ranges,
+            ways,
+            at: Place { share: 0.0, unknowns: from, determinant: f64::NAN },
+            share: 1.0,
+            guess: start,
+            last: Solution::never_reached(ranges),
+            tries: 0,
+            stage: Stage::Begin,
+            evaluations: 0,
+        }
     }
 
-    /// The root at the end of the way on the branch of a root at its beginning; `start` is tried first as a guess of it. What is no
-    /// root, or one of another branch, has not converged.
-    pub(crate) fn follow(&mut self, from: Vec<f64>, start: Vec<f64>) -> Solution {
-        let mut at = Place { share: 0.0, determinant: self.determinant(0.0, &from), unknowns: from };
-        let (mut length, mut guess) = (1.0, start);
-        let mut last = Solution::never_reached(self.ranges);
-        for _ in 0..MOST_TRIES {
-            let share = (at.share + length).min(1.0);
-            let (solution, determinant) = self.solved(share, &guess);
-            let there = Place { share, unknowns: solution.unknowns.clone(), determinant };
-            if solution.is_root() && self.leads(&at, &there) {
-                if share == 1.0 {
-                    self.determinant(1.0, &solution.unknowns);
-                    // near a fold the next step still moves the root
-                    return if self.evaluation.scaled_determinant(self.ranges).abs() < CLEAR {
-                        self.solved(1.0, &solution.unknowns).0
-                    } else {
-                        solution
-                    };
-                }
-                length = LONGER * (share - at.share);
-                let ratio = (share + length).min(1.0) - share;
-                guess = extrapolated(&there.unknowns, at.unknowns.iter().copied(), ratio / (share - at.share));
-                at = there;
-            } else {
-                last = solution;
-                length = SHORTER * (share - at.share);
-                if length < SHORTEST {
-                    break;
-                }
-                guess.clone_from(&at.unknowns);
+    /// The root at the end of the way, and the number of evaluations. What is no root, or one of another branch, has not converged.
+    pub(crate) fn follow(mut self, evaluation: &mut Evaluation<'_>) -> (Solution, u64) {
+        let mut conditions = evaluation.system().conditions(evaluation.parameters());
+        while let Some((unknowns, target)) = self.asks() {
+            evaluation.set_parameters(&target);
+            evaluation.at(unknowns);
+            self.take(evaluation, &mut conditions);
+        }
+        (self.last, self.evaluations)
+    }
+
+    /// The unknowns and the targets at which residuals and Jacobian are wanted next; `None` at the end.
+    pub(crate) fn asks(&self) -> Option<(&[f64], [f64; 2])> {
+        let (unknowns, share) = match &self.stage {
+            Stage::Begin => (&*self.at.unknowns, 0.0),
+            Stage::There(_) => (&*self.at.unknowns, self.share),
+            Stage::Back(end, _) => (&*end.solution.unknowns, self.at.share),
+            Stage::Arrival(solution) => (&*solution.unknowns, 1.0),
+            Stage::Step(descent) => (descent.asks()?, self.share),
+            Stage::Halfway(_, descent) => (descent.asks()?, self.halfway()),
+            Stage::Again(descent) => (descent.asks()?, 1.0),
+            Stage::Nothing => return None,
+        };
+        Some((unknowns, self.target(share)))
+    }
+
+    /// Goes on with residuals and Jacobian where it asked for them; `conditions` tell what its roots are.
+    pub(crate) fn take(&mut self, at: &impl Linearized, conditions: &mut Conditions<'_>) {
+        let ranges = self.ranges;
+        match std::mem::replace(&mut self.stage, Stage::Nothing) {
+            Stage::Begin => {
+                self.evaluations += 1;
+                self.at.determinant = determinant(at, ranges);
+                self.stage = Stage::Step(Descent::new(ranges, &self.guess));
             }
+            Stage::Step(descent) => match self.descended(descent, self.share, at, conditions) {
+                Ok(end) => self.look_back(end),
+                Err(descent) => self.stage = Stage::Step(descent),
+            },
+            Stage::There(end) => {
+                let led = self.led(at, &self.at.unknowns, &end.solution.unknowns);
+                self.stage = Stage::Back(end, led);
+            }
+            Stage::Back(end, there) => {
+                let back = self.led(at, &end.solution.unknowns, &self.at.unknowns);
+                // the shorter one tells; the other one leads far away where a fold is near
+                let leads = if there.0 <= back.0 { there.1 } else { back.1 };
+                self.evaluations += 2;
+                if leads { self.look_halfway(end) } else { self.shorten(end.solution) }
+            }
+            Stage::Halfway(end, descent) => match self.descended(descent, self.halfway(), at, conditions) {
+                Ok(between) => {
+                    let determinants = [self.at.determinant, end.determinant];
+                    let is_alike = is_between(determinants, 0.5, between.determinant);
+                    if between.solution.is_root() && is_alike { self.arrive(end) } else { self.shorten(end.solution) }
+                }
+                Err(descent) => self.stage = Stage::Halfway(end, descent),
+            },
+            Stage::Arrival(solution) => {
+                self.evaluations += 1;
+                if scaled_determinant(at, ranges).abs() < CLEAR {
+                    self.stage = Stage::Again(Descent::new(ranges, &solution.unknowns));
+                } else {
+                    self.last = solution;
+                }
+            }
+            Stage::Again(descent) => match self.descended(descent, 1.0, at, conditions) {
+                Ok(end) => self.last = end.solution,
+                Err(descent) => self.stage = Stage::Again(descent),
+            },
+            Stage::Nothing => {}
         }
-        if last.is_root() {
-            // a root, but not one that the way leads to, or not of this target: its residual would mislead
-            last.outcome = Outcome::NotConverged { iterations: last.iterations };
-            last.residual = f64::NAN;
-        }
-        last
+    }
+
+    /// What was found, at the end.
+    pub(crate) fn found(self) -> Solution {
+        self.last
     }
 
     fn target(&self, share: f64) -> [f64; 2] {
@@ -88,53 +171,90 @@ impl<'p, 's> Path<'p, 's> {
         if share == 1.0 { to } else { [0, 1].map(|k| from[k] + (to[k] - from[k]) * share) }
     }
 
-    fn solved(&mut self, share: f64, start: &[f64]) -> (Solution, f64) {
-        let target = self.target(share);
-        self.evaluation.set_parameters(&target);
-        let solution = solve_with(self.evaluation, self.ranges, start);
-        self.evaluations += u64::from(solution.iterations);
-        let determinant = self.evaluation.determinant(self.ranges);
-        (solution, determinant)
+    fn halfway(&self) -> f64 {
+        0.5 * (self.at.share + self.share)
     }
 
-    fn determinant(&mut self, share: f64, unknowns: &[f64]) -> f64 {
-        let target = self.target(share);
-        self.evaluation.set_parameters(&target);
-        self.evaluation.at(unknowns);
-        self.evaluations += 1;
-        self.evaluation.determinant(self.ranges)
+    /// Goes on with Newton at the targets of a share of the way; the end, or Newton if that is not yet reached.
+    fn descended(
+        &mut self,
+        mut descent: Descent<'r>,
+        share: f64,
+        at: &impl Linearized,
+        conditions: &mut Conditions<'_>,
+    ) -> Result<End, Descent<'r>> {
+        descent.take(at);
+        if descent.asks().is_some() {
+            return Err(descent);
+        }
+        conditions.set_parameters(&self.target(share));
+        let solution = descent.ended(conditions);
+        self.evaluations += u64::from(solution.iterations);
+        Ok(End { solution, determinant: determinant(at, self.ranges) })
     }
 
     /// Whether a step leads along one branch: the determinant does not vanish on the way, and tangents lead from one end to the other.
-    fn leads(&mut self, from: &Place, to: &Place) -> bool {
-        let ratio = to.determinant / from.determinant;
+    fn look_back(&mut self, end: End) {
+        let ratio = end.determinant / self.at.determinant;
         let is_alike = ratio < SAME_DETERMINANT && ratio * SAME_DETERMINANT > 1.0;
-        is_alike && self.stays_near(from, to) && {
-            let halfway: Vec<f64> = from.unknowns.iter().zip(&to.unknowns).map(|(a, b)| 0.5 * (a + b)).collect();
-            let (between, determinant) = self.solved(0.5 * (from.share + to.share), &halfway);
-            between.is_root() && is_between([from.determinant, to.determinant], 0.5, determinant)
+        if !end.solution.is_root() || !is_alike {
+            self.shorten(end.solution);
+        } else if distance(&self.at.unknowns, &end.solution.unknowns, self.ranges) <= NEAR {
+            self.look_halfway(end);
+        } else {
+            self.stage = Stage::There(end);
         }
     }
 
-    /// Whether the tangents at two solved points lead from one to the other. The shorter one tells; the other one leads far away where
-    /// a fold is near.
-    fn stays_near(&mut self, from: &Place, to: &Place) -> bool {
-        if distance(&from.unknowns, &to.unknowns, self.ranges) <= NEAR {
-            return true;
-        }
-        let (there, back) = (self.led(from, to), self.led(to, from));
-        if there.0 <= back.0 { there.1 } else { back.1 }
+    fn look_halfway(&mut self, end: End) {
+        let pairs = self.at.unknowns.iter().zip(&end.solution.unknowns);
+        let halfway: Vec<f64> = pairs.map(|(a, b)| 0.5 * (a + b)).collect();
+        self.stage = Stage::Halfway(end, Descent::new(self.ranges, &halfway));
     }
 
-    /// How far the tangent at a place leads on the way to another one, and whether it leads there.
-    fn led(&mut self, from: &Place, to: &Place) -> (f64, bool) {
-        let target = self.target(to.share);
-        self.evaluation.set_parameters(&target);
-        self.evaluation.at(&from.unknowns);
-        self.evaluations += 1;
-        let led = self.evaluation.tangent_point(self.ranges);
-        let length = distance(&from.unknowns, &led, self.ranges);
-        (length, distance(&led, &to.unknowns, self.ranges) <= ASTRAY * length + NEAR)
+    /// How far the tangent at one end of the step leads on the way to the other one, and whether it leads there.
+    fn led(&self, at: &impl Linearized, from: &[f64], to: &[f64]) -> (f64, bool) {
+        let led = tangent_point(at, from, self.ranges);
+        let length = distance(from, &led, self.ranges);
+        (length, distance(&led, to, self.ranges) <= ASTRAY * length + NEAR)
+    }
+
+    /// After a step that led along the branch.
+    fn arrive(&mut self, end: End) {
+        if self.share == 1.0 {
+            self.stage = Stage::Arrival(end.solution);
+            return;
+        }
+        let next = (self.share + LONGER * (self.share - self.at.share)).min(1.0);
+        let ratio = (next - self.share) / (self.share - self.at.share);
+        self.guess = extrapolated(&end.solution.unknowns, self.at.unknowns.iter().copied(), ratio);
+        self.at = Place { share: self.share, unknowns: end.solution.unknowns, determinant: end.determinant };
+        self.go_to(next);
+    }
+
+    /// After a step that did not.
+    fn shorten(&mut self, solution: Solution) {
+        self.last = solution;
+        let length = SHORTER * (self.share - self.at.share);
+        self.guess.clone_from(&self.at.unknowns);
+        if length < SHORTEST { self.give_up() } else { self.go_to(self.at.share + length) }
+    }
+
+    fn go_to(&mut self, share: f64) {
+        self.tries += 1;
+        if self.tries == MOST_TRIES {
+            return self.give_up();
+        }
+        self.share = share.min(1.0);
+        self.stage = Stage::Step(Descent::new(self.ranges, &self.guess));
+    }
+
+    fn give_up(&mut self) {
+        if self.last.is_root() {
+            // a root, but not one that the way leads to, or not of this target: its residual would mislead
+            self.last.outcome = Outcome::NotConverged { iterations: self.last.iterations };
+            self.last.residual = f64::NAN;
+        }
     }
 }
 

@@ -182,7 +182,7 @@ mod tests {
     use super::*;
     use crate::equations::solution::Range;
     use crate::equations::system::System;
-    use crate::newton::scalar::newton_step;
+    use crate::newton::scalar::Newton;
 
     /// Numbers in ±1 from a linear congruence.
     fn next(state: &mut u64) -> f64 {
@@ -212,7 +212,7 @@ mod tests {
         let system = System::new(&residuals, &unknowns, &given).expect("nothing is unbound");
         let mut evaluation = system.evaluation(parameters);
         evaluation.at(p);
-        let careful = newton_step(&evaluation, ranges, &mut vec![0.0; n]);
+        let careful = Newton::new(n).step(&evaluation, ranges);
         ((0..=3 * n).map(|k| lanes.output(k)[0]).collect(), careful.by, careful.singular)
     }
 

@@ -155,7 +155,11 @@ impl System {
             residuals: self.residuals.with_settings(values),
             conditions: self.conditions.with_settings(values),
             lanes: self.lanes.with_settings(values),
-            in_lanes: OnceLock::new(),
+            in_lanes: self
+                .in_lanes
+                .get()
+                .map(|tape| tape.with_settings(values))
+                .map_or_else(OnceLock::new, OnceLock::from),
             ..*self
         }
     }
@@ -193,6 +197,16 @@ impl System {
         LaneEvaluator::new(self.in_lanes.get_or_init(|| LaneTape::new(&self.tape)), self.instructions)
     }
 
+    /// Something that tells what roots at one set of parameters are.
+    pub(crate) fn conditions(&self, parameters: &[f64]) -> Conditions<'_> {
+        Conditions {
+            evaluator: ScalarEvaluator::new(&self.conditions),
+            size: self.size,
+            inputs: [&vec![0.0; self.size], parameters].concat(),
+            met: vec![0.0; self.conditions.output_count()],
+        }
+    }
+
     /// Something that evaluates it at one set of parameters.
     pub(crate) fn evaluation(&self, parameters: &[f64]) -> Evaluation<'_> {
         let mut inputs = vec![0.0; self.size];
@@ -201,8 +215,7 @@ impl System {
         Evaluation {
             system: self,
             evaluator: ScalarEvaluator::new(&self.tape),
-            conditions: ScalarEvaluator::new(&self.conditions),
-            met: vec![0.0; self.conditions.output_count()],
+            conditions: self.conditions(parameters),
             size: self.size,
             inputs,
             outputs,
@@ -220,11 +233,31 @@ pub(crate) trait Linearized {
 pub(crate) struct Evaluation<'s> {
     system: &'s System,
     evaluator: ScalarEvaluator<'s>,
-    conditions: ScalarEvaluator<'s>,
-    met: Vec<f64>,
+    /// At the same parameters.
+    pub(crate) conditions: Conditions<'s>,
     size: usize,
     inputs: Vec<f64>,
     outputs: Vec<f64>,
+}
+
+/// Tells what a root is by the conditions of its system.
+pub(crate) struct Conditions<'s> {
+    evaluator: ScalarEvaluator<'s>,
+    size: usize,
+    inputs: Vec<f64>,
+    met: Vec<f64>,
+}
+
+impl Conditions<'_> {
+    pub(crate) fn side(&mut self, root: &[f64]) -> Outcome {
+        self.inputs[..self.size].copy_from_slice(root);
+        self.evaluator.run(&self.inputs, &mut self.met);
+        side_of(self.met.iter().copied())
+    }
+
+    pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
+        self.inputs[self.size..].copy_from_slice(parameters);
+    }
 }
 
 impl<'s> Evaluation<'s> {
@@ -241,19 +274,9 @@ impl<'s> Evaluation<'s> {
         self.evaluator.run(&self.inputs, &mut self.outputs);
     }
 
-    /// What a root is by the conditions.
-    pub(crate) fn side(&mut self, root: &[f64]) -> Outcome {
-        self.inputs[..self.size].copy_from_slice(root);
-        self.conditions.run(&self.inputs, &mut self.met);
-        side_of(self.met.iter().copied())
-    }
-
     pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
         self.inputs[self.size..].copy_from_slice(parameters);
-    }
-
-    pub(crate) fn unknowns(&self) -> &[f64] {
-        &self.inputs[..self.size]
+        self.conditions.set_parameters(parameters);
     }
 }
 

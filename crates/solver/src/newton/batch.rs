@@ -8,7 +8,7 @@ use crate::equations::solution::{NEAR, Outcome, Range, distance, verdict};
 use crate::equations::system::{Linearized, System, side_of};
 use crate::equations::tolerance::{CLEAR, LARGEST_TOLERANCE, OF_SIZE, PREDICTED, TOLERANCE, VITAL};
 use crate::newton::lines::Expected;
-use crate::newton::scalar::newton_step;
+use crate::newton::scalar::Newton;
 
 /// Steps after which a lane is left to the careful path.
 const MOST_STEPS: usize = 5;
@@ -163,7 +163,7 @@ impl<'s> LaneNewton<'s> {
     }
 
     /// Before a run the determinant at the start where it is known not to vanish around there, else NaN: then the lane takes
-    /// one step at least. After it the one at the root. Scaled as in `newton_step`. Where all unknowns are given only its sign
+    /// one step at least. After it the one at the root. Scaled as in [`Newton::step`]. Where all unknowns are given only its sign
     /// counts: the root must be on that side of where the determinant vanishes.
     pub(crate) fn determinant(&mut self) -> &mut Lanes {
         &mut self.determinant
@@ -501,7 +501,7 @@ impl<'s> LaneNewton<'s> {
         self.determinant = [f64::NAN; LANES];
         for lane in 0..count {
             let at = Lane { linearized: &self.linearized, size: n, lane };
-            let step = newton_step(&at, self.ranges, &mut vec![0.0; n]);
+            let step = Newton::new(n).step(&at, self.ranges);
             for k in 0..n {
                 self.steps[k][lane] = step.by[k] / self.ranges[k].width();
                 let unknowns = (0..n).map(|column| self.checked.input(column)[lane]);

@@ -5,7 +5,7 @@ use std::ops::Range as Span;
 use flank_expr::{LANES, LaneEvaluator};
 
 use crate::equations::solution::{Range, Solution, distance};
-use crate::equations::system::{Evaluation, Linearized};
+use crate::equations::system::{Evaluation, Linearized, System};
 use crate::newton::scalar::{Descent, worst_residual};
 
 /// Bases of the Halton sequence: one for each unknown.
@@ -70,7 +70,7 @@ pub(crate) fn scan(
     let mut found: Vec<Solution> = Vec::new();
     let mut failure = Solution::never_reached(ranges);
     for descent in lanes.descend(ranges, candidates.iter().map(|(_, k)| probe(ranges, *k)).collect()) {
-        let solution = descent.ended(evaluation);
+        let solution = descent.ended(&mut evaluation.conditions);
         evaluations += u64::from(solution.iterations);
         if !is_sought(&solution) {
             failure = solution.better(failure);
@@ -85,38 +85,56 @@ pub(crate) fn scan(
 }
 
 /// Residuals and Jacobian of a system at many points at once. The bits are those of an [`Evaluation`].
-struct Lanes<'s> {
+pub(crate) struct Lanes<'s> {
     evaluator: LaneEvaluator<'s>,
     size: usize,
 }
 
 /// The same at one of the points.
-struct Lane<'l, 's>(&'l Lanes<'s>, usize);
+pub(crate) struct Lane<'l, 's>(&'l Lanes<'s>, usize);
 
 impl<'s> Lanes<'s> {
-    /// With the parameters of an evaluation.
+    pub(crate) fn new(system: &'s System) -> Lanes<'s> {
+        Lanes { evaluator: system.in_lanes(), size: system.size() }
+    }
+
+    /// With the parameters of an evaluation in all lanes.
     fn over(evaluation: &Evaluation<'s>) -> Lanes<'s> {
-        let (system, parameters) = (evaluation.system(), evaluation.parameters());
-        let mut evaluator = system.in_lanes();
-        for (k, parameter) in parameters.iter().enumerate() {
-            evaluator.input(system.size() + k).fill(*parameter);
+        let mut lanes = Lanes::new(evaluation.system());
+        for lane in 0..LANES {
+            lanes.set_parameters(lane, evaluation.parameters());
         }
-        Lanes { evaluator, size: system.size() }
+        lanes
+    }
+
+    pub(crate) fn set_parameters(&mut self, lane: usize, parameters: &[f64]) {
+        for (k, parameter) in parameters.iter().enumerate() {
+            self.evaluator.input(self.size + k)[lane] = *parameter;
+        }
+    }
+
+    pub(crate) fn set_unknowns(&mut self, lane: usize, unknowns: &[f64]) {
+        for (k, value) in unknowns.iter().enumerate() {
+            self.evaluator.input(k)[lane] = *value;
+        }
+    }
+
+    /// In the first lanes.
+    pub(crate) fn run(&mut self, count: usize) {
+        self.evaluator.run_first(count);
     }
 
     /// At the first points, as many as there are lanes at the most.
     fn compute<P: AsRef<[f64]>>(&mut self, points: impl Iterator<Item = P>) {
         let mut count = 0;
         for point in points {
-            for (k, value) in point.as_ref().iter().enumerate() {
-                self.evaluator.input(k)[count] = *value;
-            }
+            self.set_unknowns(count, point.as_ref());
             count += 1;
         }
-        self.evaluator.run_first(count);
+        self.run(count);
     }
 
-    fn at(&self, lane: usize) -> Lane<'_, 's> {
+    pub(crate) fn at(&self, lane: usize) -> Lane<'_, 's> {
         Lane(self, lane)
     }
 
@@ -154,7 +172,6 @@ mod tests {
     use flank_expr::Graph;
 
     use super::*;
-    use crate::equations::system::System;
     use crate::newton::scalar::solve_with;
 
     /// More starts than lanes, some of which lead nowhere: a line that misses the circle for one, no start is held up by another.
@@ -169,7 +186,8 @@ mod tests {
         for level in [0.1, 0.9, 7.0] {
             let mut evaluation = system.evaluation(&[level]);
             let together = Lanes::over(&evaluation).descend(&ranges, starts.clone());
-            let together: Vec<Solution> = together.into_iter().map(|one| one.ended(&mut evaluation)).collect();
+            let together: Vec<Solution> =
+                together.into_iter().map(|one| one.ended(&mut evaluation.conditions)).collect();
             for (start, together) in starts.iter().zip(together) {
                 assert_eq!(together, solve_with(&mut evaluation, &ranges, start), "from {start:?}");
             }

@@ -1,11 +1,12 @@
 //! Damped Newton inside declared ranges.
 
 use faer::Mat;
-use faer::linalg::solvers::{FullPivLu, Solve, Svd};
+use faer::linalg::solvers::Svd;
 
 use crate::equations::solution::{Outcome, Range, Solution, verdict};
-use crate::equations::system::{Evaluation, Linearized, System};
+use crate::equations::system::{Conditions, Evaluation, Linearized, System};
 use crate::equations::tolerance::{LARGEST_TOLERANCE, OF_SIZE, TOLERANCE};
+use crate::newton::elimination::Elimination;
 
 /// Steps after which a start is given up.
 const MOST_STEPS: usize = 40;
@@ -33,7 +34,7 @@ pub(crate) fn solve_with(evaluation: &mut Evaluation<'_>, ranges: &[Range], star
         evaluation.at(point);
         descent.take(evaluation);
     }
-    descent.ended(evaluation)
+    descent.ended(&mut evaluation.conditions)
 }
 
 /// Newton from one start, told residuals and Jacobian at each point that it asks for: several of them can be computed at once.
@@ -46,7 +47,7 @@ pub(crate) struct Descent<'r> {
     iterations: u32,
     steps: usize,
     singular: bool,
-    sizes: Vec<f64>,
+    newton: Newton,
     /// Where residuals and Jacobian are wanted.
     asked: Vec<f64>,
     stage: Stage,
@@ -83,7 +84,7 @@ impl<'r> Descent<'r> {
             iterations: 1,
             steps: 0,
             singular: false,
-            sizes: vec![0.0; ranges.len()],
+            newton: Newton::new(ranges.len()),
             stage: Stage::Start,
             is_root: false,
         }
@@ -134,7 +135,7 @@ impl<'r> Descent<'r> {
             return self.end(at);
         }
         self.steps += 1;
-        let Step { by: step, singular } = newton_step(at, self.ranges, &mut self.sizes);
+        let Step { by: step, singular } = self.newton.step(at, self.ranges);
         self.singular = singular;
         let was_solved = is_at_root(at, &self.p);
         // below the tolerance go on only while it pays: the floor is the rounding of the residuals
@@ -159,15 +160,15 @@ impl<'r> Descent<'r> {
     fn end(&mut self, at: &impl Linearized) {
         self.is_root = is_at_root(at, &self.p);
         if self.is_root {
-            self.singular = newton_step(at, self.ranges, &mut self.sizes).singular;
+            self.singular = self.newton.step(at, self.ranges).singular;
         }
     }
 
-    /// Where it ended, and as what by the conditions of the system; the evaluation's parameters are those that it was told of.
-    pub(crate) fn ended(self, evaluation: &mut Evaluation<'_>) -> Solution {
+    /// Where it ended, and as what by the conditions of the system at the parameters that it was told of.
+    pub(crate) fn ended(self, conditions: &mut Conditions<'_>) -> Solution {
         let Descent { p, residual, iterations, .. } = self;
         let outcome = match verdict(&p, self.ranges, self.is_root, self.singular) {
-            Outcome::Solved => evaluation.side(&p),
+            Outcome::Solved => conditions.side(&p),
             Outcome::NotConverged { .. } => Outcome::NotConverged { iterations },
             other => other,
         };
@@ -204,49 +205,55 @@ pub(crate) struct Step {
     pub(crate) singular: bool,
 }
 
-/// −J⁻¹F with unknowns scaled by their ranges and equations by the largest entry that they have had so far (`sizes`), so
-/// that an equation whose derivative vanishes on the way shows; the least-squares step of smallest size where J has no
-/// inverse.
-pub(crate) fn newton_step(evaluation: &impl Linearized, ranges: &[Range], sizes: &mut [f64]) -> Step {
-    let n = ranges.len();
-    let mut jacobian = Mat::<f64>::zeros(n, n);
-    let mut right = Mat::<f64>::zeros(n, 1);
-    for i in 0..n {
-        let scaled = |j: usize| evaluation.jacobian(i, j) * ranges[j].width();
-        sizes[i] = (0..n).map(|j| scaled(j).abs()).fold(sizes[i], f64::max);
-        let weight = if sizes[i] > 0.0 && sizes[i].is_finite() { 1.0 / sizes[i] } else { 1.0 };
-        for j in 0..n {
-            jacobian[(i, j)] = weight * scaled(j);
+/// The steps of Newton from one start.
+#[derive(Clone, Debug)]
+pub(crate) struct Newton {
+    /// The largest entry that each equation has had so far.
+    sizes: Vec<f64>,
+    equations: Elimination,
+}
+
+impl Newton {
+    pub(crate) fn new(size: usize) -> Newton {
+        Newton { sizes: vec![0.0; size], equations: Elimination::new(size) }
+    }
+
+    /// −J⁻¹F with unknowns scaled by their ranges and equations by the largest entry that they have had so far, so that an equation
+    /// whose derivative vanishes on the way shows; the least-squares step of smallest size where J has no inverse.
+    pub(crate) fn step(&mut self, at: &impl Linearized, ranges: &[Range]) -> Step {
+        let n = ranges.len();
+        let Newton { sizes, equations } = self;
+        let scaled = |row: usize, column: usize| at.jacobian(row, column) * ranges[column].width();
+        for (row, size) in sizes.iter_mut().enumerate() {
+            *size = (0..n).map(|column| scaled(row, column).abs()).fold(*size, f64::max);
         }
-        right[(i, 0)] = -weight * evaluation.residual(i);
+        let weighted = |row: usize, column: usize| {
+            let size = sizes[row];
+            let weight = if size > 0.0 && size.is_finite() { 1.0 / size } else { 1.0 };
+            weight * if column == n { -at.residual(row) } else { scaled(row, column) }
+        };
+        if !(0..n).all(|row| (0..n).all(|column| weighted(row, column).is_finite())) {
+            return Step { by: vec![0.0; n], singular: true };
+        }
+        let least = equations.eliminate(weighted).least;
+        let singular = least.is_nan() || least <= SINGULAR_BELOW;
+        let mut by = if singular { least_squares(n, weighted) } else { equations.unknowns() };
+        by.iter_mut().zip(ranges).for_each(|(step, range)| *step *= range.width());
+        Step { by, singular }
     }
-    let finite = (0..n).all(|i| (0..n).all(|j| jacobian[(i, j)].is_finite()));
-    if !finite {
-        return Step { by: vec![0.0; n], singular: true };
-    }
-    let lu = FullPivLu::new(jacobian.as_ref());
-    let least = (0..n).map(|k| lu.U()[(k, k)].abs()).fold(f64::INFINITY, f64::min);
-    let singular = least.is_nan() || least <= SINGULAR_BELOW;
-    let scaled: Vec<f64> = if singular {
-        least_squares(&jacobian, &right)
-    } else {
-        let solution = lu.solve(&right);
-        (0..n).map(|k| solution[(k, 0)]).collect()
-    };
-    Step { by: scaled.iter().zip(ranges).map(|(step, range)| step * range.width()).collect(), singular }
 }
 
 /// J⁻¹ b at the point of the last evaluation; not finite where J has no inverse.
 pub(crate) fn inverse_times(evaluation: &Evaluation<'_>, right: &[f64]) -> Vec<f64> {
     let n = right.len();
-    let jacobian = Mat::from_fn(n, n, |i, j| evaluation.jacobian(i, j));
-    let solution = FullPivLu::new(jacobian.as_ref()).solve(Mat::from_fn(n, 1, |i, _| right[i]));
-    (0..n).map(|k| solution[(k, 0)]).collect()
+    let mut equations = Elimination::new(n);
+    equations.eliminate(|row, column| if column == n { right[row] } else { evaluation.jacobian(row, column) });
+    equations.unknowns()
 }
 
-/// The shortest vector that solves J x = b as well as possible.
-fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
-    let n = jacobian.nrows();
+/// The shortest vector that solves J x = b as well as possible, given J and behind it b by row and column.
+fn least_squares(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<f64> {
+    let jacobian = Mat::from_fn(n, n, &entry);
     let Ok(svd) = Svd::new(jacobian.as_ref()) else {
         return vec![0.0; n];
     };
@@ -254,7 +261,7 @@ fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
     let largest = s[0];
     let mut x = vec![0.0; n];
     for k in (0..n).filter(|&k| s[k] > WEAKEST * largest) {
-        let share: f64 = (0..n).map(|i| u[(i, k)] * right[(i, 0)]).sum::<f64>() / s[k];
+        let share: f64 = (0..n).map(|i| u[(i, k)] * entry(i, n)).sum::<f64>() / s[k];
         for (i, x) in x.iter_mut().enumerate() {
             *x += share * v[(i, k)];
         }
@@ -262,26 +269,26 @@ fn least_squares(jacobian: &Mat<f64>, right: &Mat<f64>) -> Vec<f64> {
     x
 }
 
-impl Evaluation<'_> {
-    /// The Jacobian's determinant at the point of the last evaluation, with unknowns scaled by their ranges: along a branch it vanishes
-    /// only where the branch turns back or meets another one. Not finite where it is no number.
-    pub(crate) fn determinant(&self, ranges: &[Range]) -> f64 {
-        let n = ranges.len();
-        Mat::from_fn(n, n, |i, j| self.jacobian(i, j) * ranges[j].width()).determinant()
-    }
+/// The Jacobian's determinant, with unknowns scaled by their ranges: along a branch it vanishes only where the branch turns back or
+/// meets another one. Not finite where it is no number.
+pub(crate) fn determinant(at: &impl Linearized, ranges: &[Range]) -> f64 {
+    let n = ranges.len();
+    let entry = |row: usize, column: usize| at.jacobian(row, column) * ranges[column].width();
+    Elimination::new(n).eliminate(|row, column| if column == n { 0.0 } else { entry(row, column) }).determinant
+}
 
-    /// The same with each equation scaled by its largest entry there: how far the Jacobian is from having no inverse.
-    pub(crate) fn scaled_determinant(&self, ranges: &[Range]) -> f64 {
-        let n = ranges.len();
-        let sizes: Vec<f64> = (0..n)
-            .map(|i| (0..n).map(|j| (self.jacobian(i, j) * ranges[j].width()).abs()).fold(0.0, f64::max))
-            .collect();
-        Mat::from_fn(n, n, |i, j| self.jacobian(i, j) * ranges[j].width() / sizes[i]).determinant()
-    }
+/// The same with each equation scaled by its largest entry there: how far the Jacobian is from having no inverse.
+pub(crate) fn scaled_determinant(at: &impl Linearized, ranges: &[Range]) -> f64 {
+    let n = ranges.len();
+    let entry = |row: usize, column: usize| at.jacobian(row, column) * ranges[column].width();
+    let size = |row: usize| (0..n).map(|column| entry(row, column).abs()).fold(0.0, f64::max);
+    let sizes: Vec<f64> = (0..n).map(size).collect();
+    let scaled = |row: usize, column: usize| if column == n { 0.0 } else { entry(row, column) / sizes[row] };
+    Elimination::new(n).eliminate(scaled).determinant
+}
 
-    /// Where the tangent at the point of the last evaluation says that the root lies.
-    pub(crate) fn tangent_point(&self, ranges: &[Range]) -> Vec<f64> {
-        let step = newton_step(self, ranges, &mut vec![0.0; ranges.len()]);
-        self.unknowns().iter().zip(&step.by).map(|(p, by)| p + by).collect()
-    }
+/// Where the tangent at a point says that the root lies.
+pub(crate) fn tangent_point(at: &impl Linearized, point: &[f64], ranges: &[Range]) -> Vec<f64> {
+    let step = Newton::new(ranges.len()).step(at, ranges);
+    point.iter().zip(&step.by).map(|(p, by)| p + by).collect()
 }

@@ -56,6 +56,29 @@ fn sum_bounds(a: f64, b: f64) -> (f64, f64) {
     (if error >= 0.0 { sum } else { down(sum) }, if error <= 0.0 { sum } else { up(sum) })
 }
 
+/// What [`down`] and [`up`] are of a number that is finite and not zero, without a branch; the number itself unless `moves`.
+#[inline]
+fn down_if(moves: bool, x: f64) -> f64 {
+    let bits = x.to_bits();
+    // one unit of the last place towards zero or away from it
+    let step = ((bits >> 63) << 1).wrapping_sub(1);
+    f64::from_bits(bits.wrapping_add(step.wrapping_mul(u64::from(moves))))
+}
+
+#[inline]
+fn up_if(moves: bool, x: f64) -> f64 {
+    -down_if(moves, -x)
+}
+
+/// A sum and the sign of its rounding error, of numbers whose sum is finite: whether the sum itself is more, and whether it is less.
+#[inline]
+fn rounded_sum(a: f64, b: f64) -> (f64, bool, bool) {
+    let sum = a + b;
+    let b_part = sum - a;
+    let error = (a - (sum - b_part)) + (b - b_part);
+    (sum, error < 0.0, error > 0.0)
+}
+
 /// Lower and upper bound of a product of ends. Zero times an infinite end is zero: the end stands for numbers.
 #[inline]
 fn product_bounds(a: f64, b: f64) -> (f64, f64) {
@@ -221,11 +244,13 @@ impl std::ops::Add for Interval {
 
     #[inline]
     fn add(self, other: Interval) -> Interval {
-        if self.is_empty() || other.is_empty() {
-            return Interval::EMPTY;
+        let ((lo, is_more, _), (hi, _, is_less)) = (rounded_sum(self.lo, other.lo), rounded_sum(self.hi, other.hi));
+        // neither end is infinite, nor the largest number; a sum of zero has no error
+        if (lo.abs() < f64::MAX) & (hi.abs() < f64::MAX) & (self.lo <= self.hi) & (other.lo <= other.hi) {
+            let continuous = self.continuous & other.continuous;
+            return Interval { lo: down_if(is_more, lo), hi: up_if(is_less, hi), continuous };
         }
-        let (lo, hi) = (sum_bounds(self.lo, other.lo).0, sum_bounds(self.hi, other.hi).1);
-        Interval::with(lo, hi, self.continuous && other.continuous)
+        self.sum_with_care(other)
     }
 }
 
@@ -243,6 +268,37 @@ impl std::ops::Mul for Interval {
 
     #[inline]
     fn mul(self, other: Interval) -> Interval {
+        let (a, b) = (self, other);
+        let products = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
+        let least = |a: f64, b: f64| if a < b { a } else { b };
+        let most = |a: f64, b: f64| if a > b { a } else { b };
+        let low = least(least(products[0], products[1]), least(products[2], products[3]));
+        let high = most(most(products[0], products[1]), most(products[2], products[3]));
+        // where one is infinite or no number, so is their sum
+        let is_finite = products.iter().sum::<f64>().is_finite() & (low > f64::MIN) & (high < f64::MAX);
+        if is_finite & (low != 0.0) & (high != 0.0) & (a.lo <= a.hi) & (b.lo <= b.hi) {
+            let (lo, hi) = (down_if(true, low), up_if(true, high));
+            return Interval { lo, hi, continuous: a.continuous & b.continuous };
+        }
+        self.product_with_care(other)
+    }
+}
+
+impl Interval {
+    /// The sum of any intervals.
+    #[cold]
+    #[inline(never)]
+    fn sum_with_care(self, other: Interval) -> Interval {
+        if self.is_empty() || other.is_empty() {
+            return Interval::EMPTY;
+        }
+        let (lo, hi) = (sum_bounds(self.lo, other.lo).0, sum_bounds(self.hi, other.hi).1);
+        Interval::with(lo, hi, self.continuous && other.continuous)
+    }
+
+    /// The product of any intervals.
+    #[inline(never)]
+    fn product_with_care(self, other: Interval) -> Interval {
         if self.is_empty() || other.is_empty() {
             return Interval::EMPTY;
         }
@@ -323,6 +379,37 @@ impl Interval {
             Interval { lo: lower, hi: f64::INFINITY, continuous: false }
         } else {
             Interval { lo: f64::NEG_INFINITY, hi: upper, continuous: false }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Ends of all kinds, and numbers between them from a linear congruence.
+    fn ends() -> Vec<f64> {
+        let special = [0.0, f64::from_bits(1), f64::MIN_POSITIVE, 1e-160, 1.0, 1e160, f64::MAX, f64::INFINITY];
+        let mut state = 5u64;
+        let drawn = (0..12).map(|_| {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 51) as f64 - 2.0
+        });
+        special.into_iter().flat_map(|end| [end, -end]).chain(drawn).collect()
+    }
+
+    #[test]
+    fn sums_and_products_are_those_of_the_careful_way() {
+        let ends = ends();
+        let sorted = ends.iter().flat_map(|lo| ends.iter().filter(move |hi| lo <= *hi).map(move |hi| (*lo, *hi)));
+        let mut all: Vec<Interval> = sorted.map(|(lo, hi)| Interval::new(lo, hi)).collect();
+        all.extend([Interval::EMPTY, Interval::WHOLE, Interval::new(2.0, 1.0), Interval::new(0.5, 0.75).partial()]);
+        for a in &all {
+            for b in &all {
+                for (fast, careful) in [(*a + *b, a.sum_with_care(*b)), (*a * *b, a.product_with_care(*b))] {
+                    assert_eq!(fast, careful, "{a:?} and {b:?}");
+                }
+            }
         }
     }
 }

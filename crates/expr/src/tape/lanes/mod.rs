@@ -48,6 +48,11 @@ impl InstructionSet {
         found
     }
 
+    /// How many numbers a register of its machine code holds; `None` where tapes are gone through instruction by instruction.
+    pub fn machine_code(self) -> Option<usize> {
+        self.native.map(Vectors::lanes)
+    }
+
     /// Calls a function whose loops, where they are inlined (`#[inline(always)]`), become these instructions.
     #[inline(always)]
     pub fn dispatch<R>(self, run: impl FnOnce() -> R) -> R {

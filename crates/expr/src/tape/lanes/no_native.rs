@@ -15,6 +15,10 @@ impl Vectors {
     pub(super) fn index(self) -> usize {
         match self {}
     }
+
+    pub(super) fn lanes(self) -> usize {
+        match self {}
+    }
 }
 
 /// A scalar as wide as a register.

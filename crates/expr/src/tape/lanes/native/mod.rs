@@ -48,7 +48,7 @@ impl Vectors {
         self as usize
     }
 
-    fn lanes(self) -> usize {
+    pub(super) fn lanes(self) -> usize {
         match self {
             Vectors::Four => 4,
             Vectors::Eight => 8,
