@@ -28,6 +28,7 @@ fn picture(spec: &str, what: PlotKind, format: PictureFormat) -> PlotRequest {
         reference: None,
         of: Vec::new(),
         contact: Vec::new(),
+        milling: None,
         errors: Vec::new(),
         positions: None,
         compound: None,

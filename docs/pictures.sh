@@ -45,8 +45,9 @@ sentence() {
         fi
         jobs=$(sed -n 's/^job \([A-Za-z0-9_]*\).*/\1/p' "$spec")
         for job in $jobs; do
-            # the gear; what single edges leave is what there is to see of their work; else the surfaces
+            # the gear; what end mills leave, and what single edges leave, is what there is to see of their work; else the surfaces
             kinds="gear surface"
+            if grep -q '^ *mill .* of ' "$spec"; then kinds="milling gear surface"; fi
             if grep -q '^ *cut ' "$spec"; then kinds="gear left surface"; fi
             for kind in $kinds; do
                 if try "$spec" --job "$job" --what "$kind"; then break; fi

@@ -7,7 +7,7 @@ use flank_expr::geometry::{Axis, Chain, Step, Vector3};
 use flank_expr::{Expr, Graph};
 use flank_solver::{
     BoundSurface, Chart, Cutter, CutterPose, Lean, MillAxes, Obstacle, OutlinePiece, PoseField, PoseSeries, Range,
-    SurfaceFrame, SurfaceFrames, SurfaceProblem, ToolBody, cusp, left_by_block, lowest,
+    SurfaceFrame, SurfaceFrames, SurfaceProblem, SweptCutter, ToolBody, cusp, left_by_block, lowest,
 };
 use flank_tests::{job, number, reference_json, vector};
 use serde_json::Value;
@@ -216,6 +216,73 @@ fn ridges_on_bevel_flanks_are_those_of_brute_force() {
         let point = fields.surface.across(0.5).at(ridge.share);
         let cusp = vector(row, "cusp_on_flank");
         assert!((0..3).all(|k| (point[k] - cusp[k]).abs() < 1e-6), "{point:?} {row}");
+    }
+}
+
+/// What two passes leave together: the brute force's height at its ridge, nowhere more, and everywhere the lower one of both.
+#[test]
+fn two_passes_leave_the_ridges_of_brute_force() {
+    let table = reference_json("five_axis_scallop_a.json");
+    let graph = Graph::new();
+    let job = job(&graph, "specs/pairs/bevel_19x62.chain", &[]);
+    for row in table["bevel"].as_array().expect("rows") {
+        let (cutter, s) = (mill(row), number(row, "s"));
+        let lead = if row["tool"] == "ball" { 0.0 } else { number(row, "lead_deg").to_radians() };
+        let frames = flank(&job, name_of(row), [[number(row, "t0"), number(row, "t1")], [s - 0.1, s + 0.1]]);
+        let fields = Fields::new(&frames, &cutter, Lean { lead, ..Lean::default() });
+        let passes = [0.0, 1.0].map(|share| fields.cutter.pass(share));
+        let swept = SweptCutter::of_passes(&passes, &cutter);
+        let ridge = fields.ridge(0.5, &cutter);
+        let left = |share: f64| swept.left(&fields.surface.at([share, 0.5])).expect("it passes");
+        // a flat cutter's row is a scan that ends above the kink, as for ridges
+        let near = if row["tool"] == "flat" { 3e-9 } else { 1e-9 };
+        let at_ridge = left(ridge.share).height;
+        assert!((at_ridge - number(row, "height")).abs() < near, "{at_ridge} {row}");
+        // pieces of passes are polynomials of their own, and heights have slopes of some um per mm
+        assert!((at_ridge - ridge.height).abs() < 1e-11, "{at_ridge} {ridge:?}");
+        for k in 0..=40 {
+            let share = f64::from(k) / 40.0;
+            let found = left(share);
+            let line = fields.surface.at([share, 0.5]);
+            let each = passes.each_ref().map(|pass| lowest(pass, &cutter, &line, 0.5).map(|found| found.height));
+            let least = each.into_iter().flatten().fold(f64::INFINITY, f64::min);
+            assert!((found.height - least).abs() < 1e-11, "{found:?} {each:?}");
+            assert!(found.height <= ridge.height + 1e-11, "{found:?} {ridge:?}");
+            assert_eq!(found.way, usize::from(share > ridge.share), "{share} {ridge:?}");
+        }
+        // far beyond the ends of the passes nothing passes
+        assert_eq!(swept.left(&[1e3, 0.0, 0.0, 1.0, 0.0, 0.0]), None);
+    }
+}
+
+/// Nine passes in pieces leave what each of them leaves by itself, the least of it.
+#[test]
+fn many_passes_leave_the_least_of_all() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/pairs/bevel_19x62.chain", &[]);
+    let barrel = OutlinePiece::Arc { center: [-55.0, 6.0], radius: 60.0, between: [1.47, 1.67] };
+    let bull = OutlinePiece::Arc { center: [1.5, 0.5], radius: 0.5, between: [0.0, FRAC_PI_2] };
+    let bottom = OutlinePiece::Line { from: [0.0, 0.0], to: [1.5, 0.0] };
+    let leaning = |lead: f64, tilt: f64| Lean { lead, tilt, stock: 0.0 };
+    let cutters = [
+        (ball(1.0), leaning(0.1, 1.2)),
+        (Cutter { pieces: vec![bottom, bull] }, leaning(0.08, -0.1)),
+        (Cutter { pieces: vec![barrel] }, leaning(0.02, 1.55)),
+    ];
+    let frames = flank(&job, "pinion_concave", [[0.4, 0.6], [0.3, 0.6]]);
+    for (cutter, lean) in &cutters {
+        let fields = Fields::new(&frames, cutter, *lean);
+        let passes: Vec<PoseSeries> = (0..9).map(|k| fields.cutter.pass(f64::from(k) / 8.0)).collect();
+        let swept = SweptCutter::of_passes(&passes, cutter);
+        for place in [[0.03, 0.0], [0.21, 0.13], [0.4375, 0.5], [0.61, 0.77], [0.97, 1.0]] {
+            let line = fields.surface.at(place);
+            let each: Vec<Option<f64>> =
+                passes.iter().map(|pass| lowest(pass, cutter, &line, place[1]).map(|found| found.height)).collect();
+            let least = each.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+            let found = swept.left(&line).expect("it passes");
+            assert!((found.height - least).abs() < 1e-11, "{place:?} {found:?} {each:?}");
+            assert_eq!(each[found.way].map(|height| (height - least).abs() < 1e-11), Some(true), "{found:?} {each:?}");
+        }
     }
 }
 

@@ -93,6 +93,7 @@ impl Plot {
             reference: self.reference.clone(),
             of: self.of.clone(),
             contact: self.contact.clone(),
+            milling: self.milling.clone(),
             errors: self.errors.clone(),
             positions: self.positions,
             compound: self.compound,
@@ -229,6 +230,7 @@ impl Contact {
             sensitivity: self.sensitivity,
             vhj: self.vhj,
             certify: self.certify,
+            milled: self.milled.clone(),
             out: self.out.clone(),
             format: self.format.clone(),
             no_picture: self.no_picture,
@@ -251,6 +253,9 @@ impl Mill {
             approach: self.approach,
             spaces: self.spaces,
             verify: self.verify.clone(),
+            rows: self.rows,
+            columns: self.columns,
+            map: self.map.clone(),
             evaluator: self.evaluator.evaluator(),
         })
     }

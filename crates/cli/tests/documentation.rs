@@ -27,7 +27,7 @@ const fn page(path: &'static str) -> Page {
     Page { path, file: "page.chain", changes: &[] }
 }
 
-const PAGES: [Page; 7] = [
+const PAGES: [Page; 8] = [
     Page {
         path: "docs/tutorial.md",
         file: "gear.chain",
@@ -41,6 +41,7 @@ const PAGES: [Page; 7] = [
     Page { path: "docs/testing.md", file: "gear.chain", changes: &[] },
     page("docs/conversion.md"),
     page("docs/milling.md"),
+    page("docs/contact.md"),
     page("docs/files.md"),
     page("docs/gears.md"),
 ];

@@ -1,6 +1,10 @@
 //! `flank mill`: programs that it writes are read back, by it and by LinuxCNC's interpreter, and what cannot be milled is told with its
 //! place.
 
+#[path = "mill/dexels.rs"]
+mod dexels;
+#[path = "mill/pair.rs"]
+mod pair;
 mod support;
 
 use std::path::Path;
@@ -50,6 +54,10 @@ fn json(spec: &str, out: &Path, arguments: &[&str]) -> Value {
     serde_json::from_str(&told).expect("JSON")
 }
 
+fn text_of(file: &Path) -> String {
+    std::fs::read_to_string(file).expect("it is written")
+}
+
 const CONTROLS: [(&str, &str); 4] = [("linuxcnc", "ngc"), ("siemens", "mpf"), ("fanuc", "nc"), ("heidenhain", "h")];
 
 /// A program of each control leaves what its plan says: on no point more than cusp and block together, nowhere less than blocks cut too
@@ -80,6 +88,100 @@ fn programs_of_all_controls_leave_what_was_planned() {
             assert!(most > 0.5 * (cusp + left), "{control}: {most} um, planned {cusp} and {left}");
         }
     }
+}
+
+/// The map of what passes leave: nowhere more than the highest ridge, which is solved by itself, and nearly that beside it; the same in the
+/// file; lower by the stock's height where there is one.
+#[test]
+fn the_map_of_what_is_left_ends_at_the_highest_ridge() {
+    let out = folder("mill_map");
+    let spec = written(&out, "milled.chain", &sound());
+    let found = json(&spec, &out, &["--rows", "320", "--columns", "81", "--map", "csv,json"]);
+    let map = &found["map"];
+    let heights: Vec<f64> = map["heights_um"].as_array().unwrap().iter().map(|h| h.as_f64().unwrap()).collect();
+    assert_eq!([heights.len(), map["rows"].as_u64().unwrap() as usize], [320 * 81, 320]);
+    assert_eq!(map["untouched"], 0);
+    let most = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = heights.iter().copied().fold(f64::INFINITY, f64::min);
+    let cusp = found["cusp"]["height_um"].as_f64().unwrap();
+    assert_eq!(map["left"][0]["height_um"].as_f64(), Some(most));
+    assert_eq!(map["left"][1]["height_um"].as_f64(), Some(least));
+    // rounding of positions of some 100 mm
+    assert!(most <= cusp + 1e-9, "{most} {cusp}");
+    // 40 rows between two passes: a row lies within an 80th of the step from the ridge, whose sides rise by 4 H per step; the highest ridge
+    // lies at the end of the passes, where the cutter stops and leaves up to 4 % more than in the column beside it
+    assert!(most > cusp * (1.0 - 4.0 / 80.0 - 0.04), "{most} {cusp}");
+    assert!(least > -1e-6 && least < 0.01 * cusp, "{least}");
+    let csv = std::fs::read_to_string(out.join("milled.part.left.csv")).unwrap();
+    let mut rows = csv.lines().filter(|line| !line.starts_with('#'));
+    let header: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let column =
+        |name: &str| header.iter().position(|title| *title == name).unwrap_or_else(|| panic!("{name} in {header:?}"));
+    let [left, by] = [column("left"), column("left_by_pass")];
+    let rows: Vec<Vec<&str>> = rows.map(|row| row.split(',').collect()).collect();
+    assert_eq!(rows.len(), 320 * 81);
+    for (row, height) in rows.iter().zip(&heights) {
+        assert_eq!(row[left].parse::<f64>().unwrap(), *height);
+    }
+    assert_eq!([rows[0][by], rows[320 * 81 - 1][by]], ["1", "9"]);
+    let same: Value =
+        serde_json::from_str(&std::fs::read_to_string(out.join("milled.part.left.json")).unwrap()).unwrap();
+    assert!(same.to_string().contains("left_by_pass"));
+
+    let spec = written(
+        &out,
+        "milled.chain",
+        &job("work_z: 60 mm", BALL, &format!("{AREA} lead 5 deg\n tilt 70 deg\n stock 0.1 mm\n")),
+    );
+    let stock = json(&spec, &out, &["--rows", "320", "--columns", "81"]);
+    let [with, without] = [&stock, &found].map(|of| of["map"]["left"][0]["height_um"].as_f64().unwrap());
+    // ridges are a little lower above a flank that is convex across the passes, by 0.1 mm in a radius of some 12 mm
+    assert!((with / without - 1.0).abs() < 0.02, "{with} {without}");
+}
+
+/// Picture, report and page of a job that mills: ridges with the highest in numbers, clearances and axes along a pass, what is left as colours.
+#[test]
+fn pictures_reports_and_pages_show_what_is_left() {
+    let out = folder("mill_shown");
+    let milling = format!("{AREA} lead 5 deg\n tilt 70 deg\n clear of convex by 0.1 mm with cutter.whole\n");
+    let spec = written(&out, "milled.chain", &job("work_z: 60 mm", BALL, &milling));
+    let place = out.to_str().unwrap();
+    let run = |arguments: &[&str]| {
+        let run = flank(&[arguments, &["--job", "milled", "--out", place]].concat());
+        assert!(run.status.success(), "{arguments:?}: {}", text(&run.stderr));
+        text(&run.stdout)
+    };
+    let cusp = json(&spec, &out, &[])["cusp"]["height_um"].as_f64().unwrap();
+    run(&["plot", &spec, "--what", "milling", "--format", "svg"]);
+    let svg = text_of(&out.join("milled.milling.svg"));
+    let highest = format!("{cusp:.3} \u{b5}m");
+    for words in [
+        "ridges between the passes",
+        "cutter across the passes, at the highest ridge",
+        "clearance along the pass",
+        "rotary axes along the pass",
+        "cutter.whole to convex",
+        highest.as_str(),
+    ] {
+        assert!(svg.contains(&format!("aria-label=\"{words}\"")), "{words}");
+    }
+    let told: Value = serde_json::from_str(&run(&["report", &spec, "--json"])).unwrap();
+    assert_eq!(told["millings"][0]["map"]["points"], 465);
+    let html = text_of(&out.join("milled.report.html"));
+    for words in ["What is left, \u{b5}m, by shares of the milled part", "What the axes do", "clearance along the pass"]
+    {
+        assert!(html.contains(words), "{words}");
+    }
+    run(&["view", &spec]);
+    assert!(text_of(&out.join("milled.html")).contains("left by part"));
+    let refused =
+        |arguments: &[&str]| text(&flank(&[&["plot", &spec, "--job", "milled"][..], arguments].concat()).stderr);
+    let told = refused(&["--what", "milling", "--milling", "other"]);
+    assert!(told.contains("there is no milling `other`; there is: `part`"), "{told}");
+    let told = refused(&["--what", "machine", "--milling", "part"]);
+    assert!(told.contains("is of pictures of a milling: add `milling` to"), "{told}");
+    let told = text(&flank(&["plot", "specs/bevel/pinion_19x62.chain", "--what", "milling", "--out", place]).stderr);
+    assert!(told.contains("no `mill` of it says which surface is milled"), "{told}");
 }
 
 /// Whole programs, also of several spaces, run through LinuxCNC's interpreter: each cutting block arrives, nothing is refused.

@@ -139,6 +139,12 @@ fn comparisons_and_pictures() {
     let pair = ["contact", "specs/pairs/bevel_19x62.chain", "--no-picture", "--positions", "12"];
     judge.run(&[&pair[..], &["--sensitivity", "--vhj"], &at].concat(), 0);
     judge.run(&[&pair[..], &["--error", "m.X=1mm"], &at].concat(), 1);
+    let milled = ["contact", "specs/pairs/milled_pair.chain", "--no-picture", "--positions", "8", "--milled", "finish"];
+    judge.run(&[&milled[..], &at].concat(), 0);
+    judge.run(&[&["mill", "specs/bevel/milled_pinion.chain", "finish", "--nc", "fanuc"][..], &at].concat(), 0);
+    let program = out.join("milled_pinion.finish.nc");
+    let verified = ["mill", "specs/bevel/milled_pinion.chain", "finish", "--verify", program.to_str().unwrap()];
+    judge.run(&[&verified[..], &at].concat(), 0);
     judge.run(&[&["plot", SPUR, "--what", "surface,machine", "--format", "svg"][..], &at].concat(), 0);
     judge.run(&[&["plot", SPUR, "--what", "left"][..], &at].concat(), 1);
     judge.run(&[&["view", SPUR][..], &at].concat(), 0);

@@ -13,10 +13,10 @@ pub use page::{
 };
 pub use picture::{
     ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, DrawnFrame, ErrorCurves, GearDrawing,
-    GearFace, GearFaceKind, LinkKind, MOST_CONTACTS, MachineDrawing, MachineLink, Picture, PictureError,
-    PictureOptions, Section, SectionCircle, SectionLine, Station, StationShape, ToolPosition, TraceChart, TraceDrawing,
-    axis_positions, comparable_maps, contact, deviation_map, field_lines, field_maps, gear, machine, picture,
-    round_step, section, topography, traces,
+    GearFace, GearFaceKind, LinkKind, MOST_CONTACTS, MachineDrawing, MachineLink, MilledPairDrawing, MillingDrawing,
+    PassChart, Picture, PictureError, PictureOptions, RidgeSection, Section, SectionCircle, SectionLine, Station,
+    StationShape, ToolPosition, TraceChart, TraceDrawing, axis_positions, comparable_maps, contact, deviation_map,
+    field_lines, field_maps, gear, machine, milled_pair, milling, picture, round_step, section, topography, traces,
 };
 pub use report::{
     Block, Column, Figure, Kind, Report, Section as ReportSection, Tone, write_report_html, write_report_markdown,

@@ -73,12 +73,13 @@ pub use compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, Tr
 pub use contact::contact;
 pub use contact::result::{
     Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,
-    FlankEnd, InfluenceKind, LeadingEdge, MountedError, PlaceOnFlank, ProvenContact, TransmissionError, VhjRow,
+    FlankEnd, InfluenceKind, LeadingEdge, MilledContact, MilledPattern, MountedError, PlaceOnFlank, ProvenContact,
+    TransmissionError, VhjRow,
 };
 pub use convert::convert;
 pub use convert::milling::mill;
 pub use convert::milling::result::{
-    BallAt, ClearanceKept, CurvatureAt, HeightLeft, MillResult, MilledAxis, VerifiedProgram,
+    BallAt, ClearanceKept, CurvatureAt, HeightLeft, HeightMap, MillResult, MilledAxis, VerifiedProgram,
 };
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,

@@ -99,6 +99,7 @@ fn pictures_end_without_files() {
             reference: None,
             of: Vec::new(),
             contact: Vec::new(),
+            milling: None,
             errors: Vec::new(),
             positions: None,
             compound: None,

@@ -261,7 +261,7 @@ class Job:
         no_origin: bool = False,
     ) -> _pages.Plot:
         """Draws pictures: gear, surface, topography, traces, curvature, sensitivity, deviation, left, residual, contact-lines, section,
-        machine, motion, pattern, error, gap, path. Without a kind, the first three that fit.
+        machine, motion, pattern, error, gap, path, milling. Without a kind, the first three that fit.
 
         >>> import flank
         >>> list(flank.load("specs/bevel/pinion_19x62.chain").plot("section").pictures)

@@ -55,6 +55,9 @@ pub(crate) struct Contact {
     /// Also prove by interval arithmetic that exactly one point of contact lies where it is computed
     #[arg(long)]
     pub(crate) certify: bool,
+    /// Also the pair with the flank that a milling of the job leaves: where its ridges touch, and how evenly it turns
+    #[arg(long, value_name = "MILLING")]
+    pub(crate) milled: Option<String>,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]
     pub(crate) out: PathBuf,

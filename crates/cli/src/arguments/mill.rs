@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use flank::{CutterFormat, NcDialect};
+use flank::{CutterFormat, NcDialect, PointFormat};
 
 use super::choice::{described, names};
 use super::{EvaluatorArguments, JobArguments, count, folder, length};
@@ -50,6 +50,15 @@ pub(crate) struct Mill {
     /// Read a program and measure what its blocks leave on the surface
     #[arg(long, value_name = "FILE")]
     pub(crate) verify: Option<PathBuf>,
+    /// Rows of the points at which what is left is told, by the coordinate that passes are counted by
+    #[arg(long, value_name = "COUNT", default_value_t = 15, value_parser = count(1..=1000), allow_hyphen_values = true)]
+    pub(crate) rows: u32,
+    /// Columns of these points, by the coordinate that passes run along
+    #[arg(long, value_name = "COUNT", default_value_t = 31, value_parser = count(1..=1000), allow_hyphen_values = true)]
+    pub(crate) columns: u32,
+    /// Files with these points: csv, json, parquet, stl, obj, 3mf, vtp, several with commas
+    #[arg(long, value_name = "FORMAT", value_parser = names::<PointFormat>(), value_delimiter = ',', default_value = "csv")]
+    pub(crate) map: Vec<PointFormat>,
     /// Print the numbers as JSON
     #[arg(long)]
     pub(crate) json: bool,

@@ -40,6 +40,9 @@ pub(crate) struct Plot {
     /// The contacts that pattern, error, gap and path show, several with commas; otherwise all of the job, side by side
     #[arg(long, value_name = "NAME", value_delimiter = ',')]
     pub(crate) contact: Vec<String>,
+    /// The milling of the picture `milling`; the first of a job otherwise
+    #[arg(long, value_name = "NAME")]
+    pub(crate) milling: Option<String>,
     /// For pictures of contacts: an axis of the pair's machine that is mounted wrong, with its unit: m.E=0.1mm, m.S=2arcmin
     #[arg(long = "error", value_name = "AXIS=VALUE", value_parser = error)]
     pub(crate) errors: Vec<(String, MountingError)>,

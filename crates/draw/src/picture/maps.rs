@@ -112,7 +112,7 @@ fn caption(note: &str, panels: &[Panel<'_>]) -> String {
 }
 
 /// Panels whose values have one unit get one key for all of them.
-fn give_one_key(panels: &mut [Panel<'_>]) {
+pub(super) fn give_one_key(panels: &mut [Panel<'_>]) {
     let of_unit = |unit: &str| {
         let values = panels.iter().filter(|panel| panel.field.unit == unit).flat_map(|panel| &panel.values);
         Levels::over(values.flatten().copied(), BANDS)
@@ -162,6 +162,11 @@ impl<'a> Panel<'a> {
     /// The same laid flat as the side of a tooth: its length to the right, its tip up.
     pub(super) fn laid_flat(self) -> Panel<'a> {
         Panel { projection: Projection::laid_flat(self.patch, &self.mesh), fills: false, ..self }
+    }
+
+    /// The same as large as there is room, in either direction.
+    pub(super) fn filling(self) -> Panel<'a> {
+        Panel { fills: true, ..self.laid_flat() }
     }
 
     /// Draws it.

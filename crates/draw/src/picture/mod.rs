@@ -4,7 +4,7 @@
 //! A dataset becomes a display list once; SVG and PNG are two ways to write that list, so they show the same. Order of
 //! the files is the order of work: `mesh` and `camera` see the surfaces, `surface` turns them into faces and lines, `projection`
 //! lays them flat, `contours` turns values into bands and lines. `figure` arranges surfaces with labels, legend and inset, `maps`
-//! arranges fields (`relief` those that are heights), `contact` those of a pair with its error, `section`, `machine` and `positions` the rest, on the axes of `chart` where
+//! arranges fields (`relief` those that are heights), `contact` those of a pair with its error, `milling` ridges and passes, `section`, `machine` and `positions` the rest, on the axes of `chart` where
 //! there are some. `svg` and `png` write.
 
 mod axis;
@@ -24,6 +24,8 @@ mod levels;
 mod machine;
 mod maps;
 mod marks;
+mod milled_pair;
+mod milling;
 mod missing;
 mod occupancy;
 mod paint;
@@ -50,6 +52,8 @@ use flank_export::MotionTable;
 pub use gear::{GearDrawing, GearFace, GearFaceKind};
 pub use machine::{DrawnFrame, LinkKind, MachineDrawing, MachineLink};
 use maps::{Style, Words};
+pub use milled_pair::MilledPairDrawing;
+pub use milling::{MillingDrawing, PassChart, RidgeSection};
 use paint::Item;
 pub use section::{Section, SectionCircle, SectionLine, ToolPosition};
 pub use traces::{TraceChart, TraceDrawing};
@@ -299,6 +303,19 @@ pub fn axis_positions(tables: &[MotionTable], options: &PictureOptions) -> Pictu
 #[must_use]
 pub fn contact(kind: ContactPicture, drawing: &ContactDrawing, options: &PictureOptions) -> Picture {
     on_sheet(options, |size| contact::compose(drawing, kind, size))
+}
+
+/// Draws a flank that a cutter mills: the ridges between its passes laid flat, the cutter across the highest of them, and below what happens
+/// along a pass.
+#[must_use]
+pub fn milling(drawing: &MillingDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| milling::compose(drawing, size))
+}
+
+/// Draws a milled flank against its mate: the least gap beside that of the generated flank, and numbers over the roll.
+#[must_use]
+pub fn milled_pair(drawing: &MilledPairDrawing, options: &PictureOptions) -> Picture {
+    on_sheet(options, |size| milled_pair::compose(drawing, size))
 }
 
 /// The next of 1, 2, 5, 10, 20, … tenths and so on: a step that numbers on a scale have.

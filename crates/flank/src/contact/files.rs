@@ -4,6 +4,7 @@ use flank_chain_dsl::Job;
 use flank_draw::{ContactPicture, DrawnContact, PictureOptions};
 use flank_export::{Dataset, Patch};
 
+use crate::contact::milled::MilledPair;
 use crate::contact::pair::Members;
 use crate::contact::patches::{flank, path};
 use crate::contact::pattern::GapMap;
@@ -25,7 +26,7 @@ pub(crate) fn write(
     job: &Job<'_>,
     members: &Members<'_, '_>,
     rolling: &Rolling,
-    (maps, drawn): (&[GapMap], DrawnContact),
+    (maps, drawn, milled): (&[GapMap], DrawnContact, Option<&MilledPair>),
     (request, origin, session): (&ContactRequest, &Origin, Session),
 ) -> Result<(Vec<String>, Vec<PointGrid>), Failure> {
     let name = format!("{}.{}", job.name, members.contact.name);
@@ -43,6 +44,14 @@ pub(crate) fn write(
     let dataset = Dataset { header, patches: flanks.into_iter().chain(paths).collect() };
     let mut folder = Folder::at(&request.out, origin, session.monitor());
     folder.picture_after(&name, picture.as_ref(), |folder| folder.data(&name, &dataset.surfaces(), &request.format))?;
+    if let Some(milled) = milled {
+        let name = format!("{name}.{}", milled.result.milling);
+        let of_milled = Dataset { header: dataset.header.clone(), patches: milled.patches.to_vec() };
+        let picture = || flank_draw::milled_pair(&milled.drawing, &PictureOptions::default());
+        let picture = (!request.no_picture).then(picture);
+        let formats = &request.format;
+        folder.picture_after(&name, picture.as_ref(), |folder| folder.data(&name, &of_milled.surfaces(), formats))?;
+    }
     let grids = dataset.patches.iter().map(PointGrid::of_patch).collect();
     Ok((folder.finish()?, grids))
 }

@@ -5,6 +5,7 @@ pub(crate) mod family;
 pub(crate) mod files;
 pub(crate) mod influence;
 pub(crate) mod interference;
+pub(crate) mod milled;
 pub(crate) mod pair;
 pub(crate) mod patches;
 pub(crate) mod pattern;
@@ -21,14 +22,17 @@ use std::time::Instant;
 
 use flank_chain_dsl::{Contact, Job};
 use flank_draw::DrawnContact;
+use flank_export::Header;
 use flank_expr::Graph;
-use flank_solver::NoContact;
+use flank_solver::{NoContact, RollingPair};
 
+use self::milled::MilledPair;
 use self::pair::Members;
 use self::pattern::GapMap;
 use self::result::ContactResult;
 use self::rolling::Rolling;
 use self::summary::Summary;
+use crate::convert::milling::flank::MilledFlank;
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
@@ -37,6 +41,7 @@ use crate::project::requests::ContactRequest;
 use crate::project::session::Session;
 use crate::project::spec;
 use crate::project::spec::Origin;
+use crate::solve;
 
 /// Solves the contacts of jobs: where their flanks touch while they roll, how evenly they turn each other, and what the marking compound
 /// shows. `each` is given the result of each contact.
@@ -124,9 +129,13 @@ fn of_contact(
         (None, Vec::new())
     };
     let shown = drawn::drawn(job, &members, (&pair, &rolling), &patterns, request.compound);
-    let (files, grids) = files::write(job, &members, &rolling, (&patterns, shown), (request, origin, session))?;
+    let header = solve::header(&[job], &request.jobs, origin);
+    let (milled, unmilled) = milled_beside(job, &members, (&pair, &rolling), (request, &shown, header, session))?;
+    let (files, grids) =
+        files::write(job, &members, &rolling, (&patterns, shown, milled.as_ref()), (request, origin, session))?;
     let result = summary.of_rolling(&rolling, &patterns);
     Ok(ContactResult {
+        milled: milled.map(|milled| milled.result),
         influences,
         vhj,
         backlash,
@@ -134,9 +143,52 @@ fn of_contact(
         proven,
         files,
         grids,
-        not_done: origin.located(&[job], [&result.not_done[..], &rooms.not_done, &open].concat()),
+        not_done: origin.located(&[job], [&result.not_done[..], &rooms.not_done, &open, &unmilled].concat()),
         remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
         ..result
+    })
+}
+
+/// The pair with the milled flank that is asked for, or why that is not milled.
+///
+/// # Errors
+/// If there is no such milling, it mills neither flank of the contact, or the work is cancelled.
+fn milled_beside<'j, 'g>(
+    job: &'j Job<'g>,
+    members: &Members<'j, 'g>,
+    (pair, rolling): (&RollingPair<'_, 'g>, &Rolling),
+    (request, shown, header, session): (&ContactRequest, &DrawnContact, Header, Session<'_>),
+) -> Result<(Option<MilledPair>, Vec<NotDone>), Failure> {
+    let Some(name) = &request.milled else { return Ok((None, Vec::new())) };
+    let known = || job.millings.iter().map(|milling| format!("`{}`", milling.name)).collect::<Vec<String>>().join(", ");
+    let found = job.millings.iter().find(|milling| milling.name == *name);
+    let milling = found.ok_or_else(|| {
+        Failure::from(match job.millings.is_empty() {
+            true => format!(
+                "job {} mills nothing: add `mill {name} of SURFACE with CUTTER.cutting in MACHINE.work {{ … }}`",
+                job.name
+            ),
+            false => format!("there is no milling `{name}`; there is: {}", known()),
+        })
+    })?;
+    let surface = &job.surfaces[milling.surface].name;
+    let Some(member) = (0..2).find(|member| members.surfaces[*member].name == *surface) else {
+        let [first, second] = members.surfaces.map(|surface| &surface.name);
+        return Err(Failure::from(format!(
+            "{name} mills {surface}, and contact {} is one of {first} with {second}",
+            members.contact.name
+        )));
+    };
+    let planned = MilledFlank::planned(job, milling, (&request.jobs, session))?;
+    session.check()?;
+    Ok(match planned {
+        Ok(flank) => {
+            let _working = session.begin(format!("rolling {} as {name} mills it", members.contact.name))?;
+            let film = request.compound;
+            let milled = milled::rolled((members, member), (pair, rolling), (&flank, name), (film, shown, header));
+            (Some(milled), flank.not_done)
+        }
+        Err(missing) => (None, missing),
     })
 }
 

@@ -47,13 +47,18 @@ pub(crate) fn positions(rolling: &Rolling, compound: f64) -> Vec<[f64; 2]> {
         true => engagement.carried(step).map(|carried| carried.lag),
         false => engagement.point(0, step).map(|point| point.lag),
     };
-    let reach = NEAR.max(FILMS * compound);
+    let reach = reach_of_film(compound);
     let position = |step: isize| {
         let (lag, point) = (lag(step)?, engagement.point(0, step)?);
         let apart = ((lag - point.lag) * point.opening).abs();
         (apart <= reach).then(|| [rolling.roll(step), lag])
     };
     steps.filter_map(position).collect()
+}
+
+/// Flanks of a pair of teeth are compared while they are nearer than this, mm.
+pub(crate) fn reach_of_film(compound: f64) -> f64 {
+    NEAR.max(FILMS * compound)
 }
 
 /// How far away a mate is looked for, mm: a part of the way from one tooth to the next along the normal, where the pitch is known.

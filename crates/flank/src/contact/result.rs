@@ -51,6 +51,8 @@ pub struct ContactResult {
     pub influences: Vec<ContactInfluence>,
     /// Mountings that bring the contact to other places, if that was asked for.
     pub vhj: Vec<VhjRow>,
+    /// The same pair with a milled flank, if that was asked for.
+    pub milled: Option<MilledContact>,
     /// What is proven of the contact from its first touch to its last, if that was asked for.
     pub proven: Option<ProvenContact>,
     /// Files written, in their order.
@@ -76,6 +78,48 @@ pub struct ProvenContact {
     pub radius_mm: Option<f64>,
     /// The largest deviation of the error, in the unit of the unknown.
     pub error: Option<f64>,
+}
+
+/// A pair whose one flank is milled: its ridges touch the mate.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct MilledContact {
+    /// The milling.
+    pub milling: String,
+    /// The flank that it mills.
+    pub surface: String,
+    /// Its highest ridge beside the stock, um.
+    pub ridge_um: f64,
+    /// `urad` or `um`, of errors.
+    pub unit: String,
+    /// The composite error's greatest less its least value over a pitch, at `rolls`.
+    pub peak_to_peak: f64,
+    /// The same of the generated pair, at the same roll positions.
+    pub generated_peak_to_peak: f64,
+    /// By how much the ridges hold the driven member away from where the generated pair has it, at the least and at the most.
+    pub ahead: [f64; 2],
+    /// More than this it cannot be: the highest ridge and the stock over the shortest lever.
+    pub at_most: f64,
+    /// What the marking compound shows on the milled part: of the generated flank, then of the milled one.
+    pub patterns: [MilledPattern; 2],
+    /// Roll positions over a pitch, deg or mm.
+    pub rolls: Vec<f64>,
+    /// The error of the generated pair there, from that of its middle.
+    pub generated: Vec<f64>,
+    /// The error of the milled pair there, from the same.
+    pub milled: Vec<f64>,
+}
+
+/// What the marking compound shows on the milled part of a flank, at places of the passes and of the ridges between them.
+#[derive(Clone, Debug, Serialize, JsonSchema)]
+pub struct MilledPattern {
+    /// Whether the flank is as it is milled, else as generated.
+    pub is_milled: bool,
+    /// Places that it touches.
+    pub within: usize,
+    /// Places.
+    pub points: usize,
+    /// The least gap, um; negative where the mate reaches in.
+    pub least_um: Option<f64>,
 }
 
 /// A flank of a contact.

@@ -94,6 +94,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             clearances: Vec::new(),
             influences: Vec::new(),
             vhj: Vec::new(),
+            milled: None,
             proven: None,
             files: Vec::new(),
             grids: Vec::new(),

@@ -5,7 +5,8 @@ use std::fmt;
 use flank_export::fixed;
 
 use crate::contact::result::{
-    ContactInfluence, ContactKind, ContactMiddle, ContactPattern, ContactResult, InfluenceKind,
+    ContactInfluence, ContactKind, ContactMiddle, ContactPattern, ContactResult, InfluenceKind, MilledContact,
+    MilledPattern,
 };
 use crate::project::units;
 
@@ -75,6 +76,7 @@ impl ContactResult {
             facts.push(("edges", format!("{} carries from {over} {from} to {to} {over_unit}", edge.edge)));
         }
         facts.extend(self.pattern.iter().map(|pattern| ("pattern", pattern.text())));
+        facts.extend(self.milled.iter().flat_map(MilledContact::facts));
         if let Some(backlash) = &self.backlash {
             let (unit, other) = (&self.unknown_unit, &backlash.other);
             let (least, normal, turn) = (fixed(backlash.least, 5), fixed(backlash.normal, 4), fixed(backlash.turn, 3));
@@ -193,6 +195,24 @@ impl ContactResult {
             }
         }
         Ok(())
+    }
+}
+
+impl MilledContact {
+    fn facts(&self) -> Vec<(&'static str, String)> {
+        let MilledContact { milling, surface, unit, patterns, .. } = self;
+        let [size, generated, least, most, bound] =
+            [self.peak_to_peak, self.generated_peak_to_peak, self.ahead[0], self.ahead[1], self.at_most]
+                .map(|value| fixed(value, 3));
+        let ridge = fixed(self.ridge_um, 3);
+        let share = |pattern: &MilledPattern| fixed(100.0 * pattern.within as f64 / pattern.points.max(1) as f64, 1);
+        let [of_generated, of_milled] = patterns.each_ref().map(share);
+        vec![
+            ("milled", format!("{surface} by {milling}, ridges up to {ridge} um")),
+            ("", format!("error peak to peak {size} {unit} over a pitch, of the generated pair {generated}")),
+            ("", format!("the ridges hold it {least} to {most} {unit} away; {bound} at the most")),
+            ("", format!("pattern {of_milled} % of the milled part, as generated {of_generated} %")),
+        ]
     }
 }
 

@@ -5,6 +5,7 @@ pub(crate) mod contacts;
 mod gear;
 mod machine;
 mod maps;
+pub(crate) mod millings;
 mod motion;
 pub(crate) mod result;
 mod section;
@@ -71,6 +72,7 @@ pub fn plot(request: &PlotRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(P
         ));
     }
     contacts::check(request)?;
+    millings::check(request)?;
     match &request.reference {
         Some(_) => comparison::check(request)?,
         None if request.what.contains(&PlotKind::Deviation) => {
@@ -116,8 +118,8 @@ fn plot_jobs(
     if meant.is_empty() {
         return Err("no job asks for points: add a `sample` for one of its surfaces".to_string().into());
     }
-    let of_surfaces: Vec<PlotKind> =
-        request.what.iter().copied().filter(|what| !contacts::KINDS.contains(what)).collect();
+    let is_of_surfaces = |what: &PlotKind| !contacts::KINDS.contains(what) && *what != PlotKind::Milling;
+    let of_surfaces: Vec<PlotKind> = request.what.iter().copied().filter(is_of_surfaces).collect();
     let plot = |job: &&Job<'_>| -> Result<PlotResult, Failure> {
         let names: Vec<&str> = named.iter().map(|of| of.surface.name.as_str()).collect();
         let header = with_origin(solve::header(&[job], &request.jobs, origin), request);
@@ -139,6 +141,13 @@ fn plot_jobs(
             let found = contacts::solved(job, request, session)?;
             drawn.extend(contacts::drawings(job, &found, request, &header).map_err(refused)?);
             not_done.extend(found.not_done);
+        }
+        if request.what.contains(&PlotKind::Milling) {
+            let milling = millings::of_job(job, request)?;
+            let milling = milling.ok_or_else(|| refused((PlotKind::Milling, millings::NONE.to_string())))?;
+            let (drawing, missing) = millings::drawing(job, milling, request, (header.clone(), session))?;
+            drawn.extend(drawing.map(|drawing| (PlotKind::Milling, drawing)));
+            not_done.extend(missing);
         }
         drawn.sort_by_key(|(what, _)| request.what.iter().position(|asked| asked == what));
         let written = write(&drawn, &job.name, (request, session), origin)?;
@@ -206,13 +215,15 @@ pub(crate) fn draw(
         PlotKind::Machine => machine::draw(subject, &options),
         PlotKind::Motion => motion::draw(subject, &options),
         PlotKind::Pattern | PlotKind::Error | PlotKind::Gap | PlotKind::Path => Err(contacts::NONE.to_string()),
+        PlotKind::Milling => Err(millings::NONE.to_string()),
     }
 }
 
 fn unfit(subject: &Subject<'_, '_>, what: PlotKind, why: &str, request: &PlotRequest) -> String {
-    let fits = |other: PlotKind| match contacts::KINDS.contains(&other) {
-        true => !subject.job.contacts.is_empty(),
-        false => draw(subject, other, &request.of, options(request)).is_ok(),
+    let fits = |other: PlotKind| match other {
+        PlotKind::Milling => !subject.job.millings.is_empty(),
+        _ if contacts::KINDS.contains(&other) => !subject.job.contacts.is_empty(),
+        _ => draw(subject, other, &request.of, options(request)).is_ok(),
     };
     let others = PlotKind::ALL.iter().filter(|other| fits(**other));
     let others: Vec<String> = others.map(|other| other.name().to_string()).collect();

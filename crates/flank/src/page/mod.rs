@@ -4,6 +4,7 @@ mod bodies;
 mod contacts;
 mod functions;
 mod machines;
+mod millings;
 mod parameters;
 pub(crate) mod result;
 mod surfaces;
@@ -107,6 +108,8 @@ fn pages(
         let contacts = contacts::rolled(job, selection, wanted.session)?;
         contacts::add_gaps(&contacts, &solved, &mut dataset.patches);
         not_done.extend(contacts.iter().flat_map(contacts::Shown::refused));
+        let of_mills = (selection, wanted.session);
+        not_done.extend(millings::add_left(job, &solved, &mut dataset.patches, of_mills)?);
         let mut remarks = Vec::new();
         let written = if tally.solved == 0 {
             let message = format!("no page: job `{}` has no point to show", job.name);

@@ -216,6 +216,8 @@ choices! {
         Gap = "gap",
         /// The path of contact of a pair on both flanks, with roll positions and ellipses.
         Path = "path",
+        /// What an end mill leaves: the ridges between its passes, the cutter across them, clearances and rotary axes along a pass.
+        Milling = "milling",
     }
 }
 

@@ -182,6 +182,8 @@ pub struct PlotRequest {
     pub of: Vec<String>,
     /// The contacts that pictures of contacts show; all of a job if none is named.
     pub contact: Vec<String>,
+    /// The milling that the picture of one shows; the first of a job if none is named.
+    pub milling: Option<String>,
     /// How the members of contacts are mounted wrong, as for [`ContactRequest::errors`].
     pub errors: Vec<(String, MountingError)>,
     /// Positions over a pitch, if not as many as [`ContactRequest::new`] has.
@@ -502,6 +504,8 @@ pub struct ContactRequest {
     pub vhj: bool,
     /// Also proofs that the flanks touch where they are said to.
     pub certify: bool,
+    /// A milling of the job: also the same pair with the flank that it leaves.
+    pub milled: Option<String>,
     /// Folder for the files; made if it is not there.
     pub out: PathBuf,
     /// Files with gaps and paths.
@@ -524,6 +528,7 @@ impl ContactRequest {
             sensitivity: false,
             vhj: false,
             certify: false,
+            milled: None,
             out: "build".into(),
             format: vec![PointFormat::Csv],
             no_picture: false,
@@ -557,12 +562,18 @@ pub struct MillRequest {
     pub spaces: u32,
     /// A program whose blocks are measured on the surface.
     pub verify: Option<PathBuf>,
+    /// Rows of the points at which what is left is known, of equal cells by the coordinate that passes are counted by.
+    pub rows: u32,
+    /// Columns of these points, by the coordinate that passes run along.
+    pub columns: u32,
+    /// Files with these points.
+    pub map: Vec<PointFormat>,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
 }
 
 impl MillRequest {
-    /// All millings, cutter locations as a table into the folder `build`, 600 mm/min, one space.
+    /// All millings, cutter locations and what is left as tables into the folder `build`, 600 mm/min, one space.
     pub fn new(jobs: impl Into<JobSelection>) -> MillRequest {
         MillRequest {
             jobs: jobs.into(),
@@ -576,6 +587,9 @@ impl MillRequest {
             approach: 5.0,
             spaces: 1,
             verify: None,
+            rows: 15,
+            columns: 31,
+            map: vec![PointFormat::Csv],
             evaluator: EvaluatorOptions::default(),
         }
     }

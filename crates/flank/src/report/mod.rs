@@ -8,6 +8,7 @@ mod gear;
 mod influences;
 mod inputs;
 mod machines;
+mod millings;
 mod pictures;
 pub(crate) mod result;
 mod results;
@@ -16,19 +17,22 @@ mod target;
 mod unchecked;
 
 use flank_chain_dsl::{Job, Sources};
-use flank_draw::{Block, DrawnContact, Figure, PictureOptions, Report as Document, ReportSection, Tone};
+use flank_draw::{
+    Block, DrawnContact, Figure, MillingDrawing, PictureOptions, Report as Document, ReportSection, Tone,
+};
 use flank_export::Header;
 use flank_expr::Graph;
 use flank_solver::TOLERANCE;
 
 use crate::compare::trace_result::FlankTraces;
 use crate::contact::{self, result::ContactResult};
+use crate::convert::milling::{drawn, result::MillResult};
 use crate::draw::{self, Drawing, Subject};
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::remark::NotDone;
-use crate::project::requests::{ContactRequest, ReportRequest};
+use crate::project::requests::{ContactRequest, MillRequest, ReportRequest};
 use crate::project::session::{Session, check};
 use crate::project::spec;
 use crate::project::spec::Origin;
@@ -88,6 +92,7 @@ struct Findings<'j, 'g> {
     faces: Vec<Smooth>,
     is_certified: bool,
     contacts: Vec<ShownContact>,
+    millings: Vec<ShownMilling>,
     gears: Vec<gear::Gear<'j>>,
     /// Of involute flanks.
     traces: Vec<FlankTraces>,
@@ -95,6 +100,9 @@ struct Findings<'j, 'g> {
 
 /// What is known of a contact, and what pictures show of it.
 type ShownContact = (ContactResult, Option<DrawnContact>);
+
+/// What is known of a milling, and what a picture shows of it.
+type ShownMilling = (MillResult, Option<MillingDrawing>);
 
 impl<'j, 'g> Findings<'j, 'g> {
     fn of_job(
@@ -131,6 +139,9 @@ impl<'j, 'g> Findings<'j, 'g> {
         let of_contacts = ContactRequest { sensitivity: true, ..ContactRequest::new(request.jobs.clone()) };
         let shown = |contact| contact::shown(job, contact, &of_contacts, wanted.session);
         let contacts = job.contacts.iter().map(shown).collect::<Result<_, Failure>>()?;
+        let to_mill = MillRequest::new(request.jobs.clone());
+        let shown = |milling| drawn::shown(job, milling, &to_mill, (unsigned.clone(), wanted.session));
+        let millings = job.millings.iter().map(shown).collect::<Result<_, Failure>>()?;
         let subject = Subject::of_solved(job, solved, &[], unsigned, wanted.session)?;
         let drawings = draw::defaults(&subject, PictureOptions::default());
         let gears = gear::gears(&subject)?;
@@ -149,6 +160,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             faces,
             is_certified: request.certify,
             contacts,
+            millings,
             gears,
             traces,
         })
@@ -171,6 +183,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         all.extend(certify::failed(solved));
         all.extend(travel::beyond(self.job, solved));
         all.extend(self.contacts.iter().flat_map(|(contact, _)| contact.not_done.iter().cloned()));
+        all.extend(self.millings.iter().flat_map(|(milling, _)| milling.not_done.iter().cloned()));
         all.extend(step::missed(&self.faces, self.request.step.unwrap_or_default()));
         all
     }
@@ -189,6 +202,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         sections.extend([extremes::section(self), ends::section(self)]);
         sections.extend(influences::section(self));
         sections.extend(contacts::section(self));
+        sections.extend(millings::section(self));
         sections.extend(pictures::section(self));
         let unchecked = unchecked::unchecked(self);
         let blocks = vec![
@@ -272,6 +286,7 @@ impl<'j, 'g> Findings<'j, 'g> {
             solids: solids::all(self),
             traces: self.traces.clone(),
             contacts: self.contacts.iter().map(|(contact, _)| contact.clone()).collect(),
+            millings: self.millings.iter().map(|(milling, _)| milling.clone()).collect(),
             surfaces: results::told(self),
             lines: ends::told(self),
             faces: step::results(&self.faces),

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use crate::compare::trace_result::FlankTraces;
 use crate::contact::result::ContactResult;
+use crate::convert::milling::result::MillResult;
 use crate::project::answer::Answer;
 use crate::project::quantity::{NamedValue, Travel, UnitSymbol};
 use crate::project::remark::NotDone;
@@ -51,6 +52,8 @@ pub struct ReportResult {
     pub traces: Vec<FlankTraces>,
     /// As in flank.contact/1.
     pub contacts: Vec<ContactResult>,
+    /// What is milled.
+    pub millings: Vec<MillResult>,
     /// Surfaces with a sample: as in flank.solve/3, and more.
     pub surfaces: Vec<ReportedSurface>,
     /// Where surfaces turn back, contact ends, one trims another; also those that were not found.

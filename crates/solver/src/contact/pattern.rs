@@ -105,6 +105,32 @@ impl GapProblem {
         nodes.par_chunks(TILE).flat_map_iter(|nodes| self.least_of(nodes, &poses, &mate)).collect()
     }
 
+    /// The same at each position: of each point the distances, position by position.
+    pub fn each(
+        &self,
+        nodes: &[SurfacePoint],
+        positions: &[[f64; 2]],
+        mate: &[SurfacePoint],
+        reach: f64,
+    ) -> Vec<Vec<Option<f64>>> {
+        let poses: Vec<Pose> = positions.iter().map(|at| self.pose_at(*at)).collect();
+        let points: Vec<&SurfacePoint> = mate.iter().filter(|point| point.outcome == Outcome::Solved).collect();
+        if points.is_empty() {
+            return vec![vec![None; positions.len()]; nodes.len()];
+        }
+        let mate = Mate::new(points, reach);
+        let of_tile = |tile: &[SurfacePoint]| {
+            let mut newton = LaneNewton::new(&self.along_normal, &self.ranges);
+            let in_lanes = |nodes: &[SurfacePoint]| {
+                let feet = self.feet(&mut newton, nodes, &poses, &mate);
+                let of_lane = |lane: usize| self.on_mate(&nodes[lane], &poses, feet.distances(lane), reach).collect();
+                (0..nodes.len()).map(of_lane).collect::<Vec<Vec<Option<f64>>>>()
+            };
+            tile.chunks(LANES).flat_map(in_lanes).collect::<Vec<_>>()
+        };
+        nodes.par_chunks(TILE).flat_map_iter(of_tile).collect()
+    }
+
     fn pose_at(&self, position: [f64; 2]) -> Pose {
         let mut pose = [0.0; 12];
         ScalarEvaluator::new(&self.pose).run(&[&position[..], &self.values].concat(), &mut pose);
@@ -116,7 +142,6 @@ impl GapProblem {
         nodes.chunks(LANES).flat_map(|nodes| self.least_in_lanes(&mut newton, nodes, poses, mate)).collect()
     }
 
-    /// Of no more nodes than there are lanes.
     fn least_in_lanes(
         &self,
         newton: &mut LaneNewton<'_>,
@@ -124,6 +149,12 @@ impl GapProblem {
         poses: &[Pose],
         mate: &Mate<'_>,
     ) -> Vec<Option<Gap>> {
+        let feet = self.feet(newton, nodes, poses, mate);
+        (0..nodes.len()).map(|lane| self.least_at(&nodes[lane], poses, feet.distances(lane), mate.reach)).collect()
+    }
+
+    /// Where the normals of no more nodes than there are lanes meet the mate.
+    fn feet(&self, newton: &mut LaneNewton<'_>, nodes: &[SurfacePoint], poses: &[Pose], mate: &Mate<'_>) -> Feet {
         let mut feet = Feet::new(self.ranges.len(), poses.len());
         let is_on_tooth: Vec<bool> =
             nodes.iter().map(|node| node.outcome == Outcome::Solved && self.is_on_tooth(node)).collect();
@@ -157,7 +188,7 @@ impl GapProblem {
                 self.follow(newton, &mut feet, position, (&active, &asked));
             }
         }
-        (0..nodes.len()).map(|lane| self.least_at(&nodes[lane], poses, feet.distances(lane), mate.reach)).collect()
+        feet
     }
 
     /// Feet from the starts that stand in the lanes.
@@ -203,6 +234,19 @@ impl GapProblem {
         near.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         let on_mate = near.into_iter().find(|(at, distance)| self.is_on_mate(&seen(&poses[*at], node), *distance));
         on_mate.map(|(position, distance)| Gap { distance, position })
+    }
+
+    /// The distances by position of a node, where the mate's tooth is there.
+    fn on_mate<'f>(
+        &'f self,
+        node: &'f SurfacePoint,
+        poses: &'f [Pose],
+        distances: impl Iterator<Item = Option<f64>> + 'f,
+        reach: f64,
+    ) -> impl Iterator<Item = Option<f64>> + 'f {
+        distances.zip(poses).map(move |(distance, pose)| {
+            distance.filter(|distance| distance.abs() <= reach && self.is_on_mate(&seen(pose, node), *distance))
+        })
     }
 
     fn alone(&self, asked: &[f64; 6], start: &[f64]) -> Option<Vec<f64>> {

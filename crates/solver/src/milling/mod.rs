@@ -12,3 +12,4 @@ pub(crate) mod height;
 pub(crate) mod outline;
 pub(crate) mod pose;
 pub(crate) mod series;
+pub(crate) mod sweep;

@@ -41,6 +41,11 @@ impl PoseSeries {
         PoseSeries::through(&Chart::shares(count).into_iter().map(at).collect::<Vec<[f64; 6]>>())
     }
 
+    /// Through how many values it goes.
+    pub(crate) fn values(&self) -> usize {
+        self.coefficients.len()
+    }
+
     /// The values at a share.
     pub fn at(&self, share: f64) -> [f64; 6] {
         self.moving(share)[0]

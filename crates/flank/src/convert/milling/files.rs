@@ -7,6 +7,7 @@ use flank_chain_dsl::{Dimension, Job};
 use flank_export::{Dialect, MachineAxis, PassProgram, ProgramPass, WordsOf, write_passes};
 
 use super::Milled;
+use super::left::LeftMap;
 use super::machine::Machine;
 use super::target::Target;
 use crate::convert::files::decimals;
@@ -29,7 +30,7 @@ const AWAY: f64 = 100.0;
 pub(super) fn write(
     job: &Job<'_>,
     target: &Target<'_, '_>,
-    milled: &Milled<'_, '_>,
+    (milled, (map, read)): (&Milled<'_, '_>, (&LeftMap, Option<&LeftMap>)),
     (request, origin, session): (&MillRequest, &Origin, Session<'_>),
     is_whole: bool,
 ) -> Result<Vec<String>, Failure> {
@@ -48,6 +49,11 @@ pub(super) fn write(
             CutterFormat::Csv => folder.text(&format!("{name}.csv"), &table(target, milled))?,
             CutterFormat::Apt => folder.text(&format!("{name}.cl"), &apt(job, target, milled, request))?,
         }
+    }
+    let header = || solve::header(&[job], &request.jobs, origin);
+    if !request.map.is_empty() {
+        let dataset = map.dataset(job, target, header(), read);
+        folder.data(&format!("{name}.left"), &dataset.surfaces(), &request.map)?;
     }
     for (extension, text) in &programs {
         folder.text(&format!("{name}.{extension}"), text)?;

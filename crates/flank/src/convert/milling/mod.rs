@@ -1,8 +1,11 @@
 //! `flank mill`
 
 mod cutter;
+pub(crate) mod drawn;
 mod files;
+pub(crate) mod flank;
 mod klartext;
+mod left;
 mod machine;
 mod obstacles;
 mod patch;
@@ -17,9 +20,10 @@ use std::time::Instant;
 
 use flank_chain_dsl::{Job, Milling};
 use flank_expr::Graph;
-use flank_solver::Bending;
+use flank_solver::{Bending, SweptCutter};
 
 use self::cutter::MillingCutter;
+use self::left::LeftMap;
 use self::machine::{Machine, NoMachine};
 use self::patch::Lattice;
 use self::plan::{LeftAt, Plan, Planner};
@@ -95,22 +99,37 @@ impl Milled<'_, '_> {
     }
 }
 
-fn of_milling(
-    job: &Job<'_>,
-    milling: &Milling<'_>,
+/// A milling with all that was worked out of it.
+pub(crate) struct Worked<'j, 'g> {
+    target: Target<'j, 'g>,
+    result: MillResult,
+    /// Nothing where there is no plan, and the result says why.
+    found: Option<Found<'j, 'g>>,
+}
+
+/// A planned milling.
+struct Found<'j, 'g> {
+    cutter: MillingCutter,
+    fields: Fields,
+    milled: Milled<'j, 'g>,
+    swept: SweptCutter,
+    map: LeftMap,
+}
+
+/// Plans a milling and measures what it leaves; nothing is written or read back.
+///
+/// # Errors
+/// If the cutter is none, something that it keeps clear of is not sampled, or the work is cancelled.
+pub(crate) fn worked<'j, 'g>(
+    job: &'j Job<'g>,
+    milling: &'j Milling<'g>,
     request: &MillRequest,
-    origin: &Origin,
     session: Session<'_>,
-) -> Result<MillResult, Failure> {
+) -> Result<Worked<'j, 'g>, Failure> {
     let cutter = MillingCutter::of_milling(job, milling)?;
     let _working = session.begin(format!("milling {}", milling.name))?;
     let target = Target::new(job, milling, session);
     let mut result = nothing(job, &target, request);
-    let located = |result: MillResult| MillResult {
-        not_done: origin.located(&[job], result.not_done),
-        remarks: origin.located(&[job], result.remarks),
-        ..result
-    };
     let (machine, remark) = machine_of(job, milling);
     result.remarks.extend(remark);
     if machine.is_none() && (!request.nc.is_empty() || request.verify.is_some()) {
@@ -118,27 +137,53 @@ fn of_milling(
             format!("{} has no axes in closed form, and programs are made of them", job.machines[milling.machine].name);
         result.not_done.push(NotDone::new(NotDoneKind::NoClosedForm, &milling.name, message));
     }
-    let milled = match target
+    let planned = target
         .fields(&cutter)
-        .and_then(|fields| milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)))
-    {
-        Ok(milled) => milled,
+        .and_then(|fields| milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)));
+    let (fields, milled) = match planned {
+        Ok(planned) => planned,
         Err(missing) => {
             result.not_done.push(missing);
-            return Ok(located(result));
+            return Ok(Worked { target, result, found: None });
         }
     };
     session.check()?;
-    let (fields, milled) = milled;
     describe(&mut result, &target, &cutter, &fields, &milled);
     let (kept, missed) = obstacles::kept(job, &target, &milled, session)?;
     result.clearances = kept;
     result.not_done.extend(missed);
-    if let (Some(path), Some(machine)) = (&request.verify, &milled.machine) {
-        result.verified = Some(verify::program(path, &target, &cutter, machine, &fields)?);
+    let swept = left::of_plan(&milled.plan, &fields, &cutter);
+    let map = LeftMap::of_cutter(&target, &fields, &swept, [request.rows as usize, request.columns as usize]);
+    session.check()?;
+    result.map = Some(map.result(&target));
+    Ok(Worked { target, result, found: Some(Found { cutter, fields, milled, swept, map }) })
+}
+
+fn of_milling(
+    job: &Job<'_>,
+    milling: &Milling<'_>,
+    request: &MillRequest,
+    origin: &Origin,
+    session: Session<'_>,
+) -> Result<MillResult, Failure> {
+    let Worked { target, mut result, found } = worked(job, milling, request, session)?;
+    if let Some(Found { cutter, fields, milled, map, .. }) = &found {
+        let read = match (&request.verify, &milled.machine) {
+            (Some(path), Some(machine)) => Some(verify::program(path, &target, cutter, machine, (fields, map.counts))?),
+            _ => None,
+        };
+        result.verified = read.as_ref().map(|read| read.result(&target));
+        // what is not passed over is told, and hinders no program
+        let is_whole = result.not_done.is_empty();
+        result.not_done.extend(map.missing(&target));
+        let maps = (map, read.as_ref().map(|read| &read.map));
+        result.files = files::write(job, &target, (milled, maps), (request, origin, session), is_whole)?;
     }
-    result.files = files::write(job, &target, &milled, (request, origin, session), result.not_done.is_empty())?;
-    Ok(located(result))
+    Ok(MillResult {
+        not_done: origin.located(&[job], result.not_done),
+        remarks: origin.located(&[job], result.remarks),
+        ..result
+    })
 }
 
 /// The machine, or why its axes are not known.
@@ -203,6 +248,7 @@ fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> Mil
         block_length: None,
         path_length: None,
         cusp: None,
+        map: None,
         blocks: None,
         tool_centre_control: request.tool_centre_control,
         effective_radius: None,
@@ -220,7 +266,7 @@ fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> Mil
     }
 }
 
-fn left(target: &Target<'_, '_>, left: LeftAt) -> HeightLeft {
+fn left_at(target: &Target<'_, '_>, left: LeftAt) -> HeightLeft {
     let values = target.values(left.shares);
     let dimensions = target.milling.area.dimensions;
     HeightLeft {
@@ -244,8 +290,8 @@ fn describe(
     result.pass_step = Some(plan.step);
     result.block_length = Some(plan.block);
     result.path_length = Some(milled.poses.iter().map(way).sum());
-    result.cusp = Some(left(target, plan.cusp));
-    result.blocks = Some(plan.blocks.map(|ends| left(target, ends)));
+    result.cusp = Some(left_at(target, plan.cusp));
+    result.blocks = Some(plan.blocks.map(|ends| left_at(target, ends)));
     result.polynomials_off = Some(fields.off);
     result.timing.points = milled.lattice.frames.len();
     if let Some((unknown, by)) = milled.lattice.beyond {

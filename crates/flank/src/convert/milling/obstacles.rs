@@ -42,7 +42,7 @@ pub(super) fn kept(
 }
 
 /// The part of a surface that its sample asks for.
-fn sampled<'g>(
+pub(super) fn sampled<'g>(
     job: &Job<'g>,
     milling: &Milling<'g>,
     clearance: &MillingClearance<'g>,

@@ -1,7 +1,7 @@
 //! A part of a surface between values of two coordinates, at any shares of both.
 
 use flank_chain_dsl::{GeneratedSurface, Job, MilledArea};
-use flank_solver::{Chart, Outcome, PoseField, SurfaceFrame, SurfaceFrames, SurfaceProblem};
+use flank_solver::{Chart, Outcome, PoseField, SurfaceFrame, SurfaceFrames, SurfacePoint, SurfaceProblem};
 
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::session::Session;
@@ -67,6 +67,10 @@ impl<'j, 'g> Patch<'j, 'g> {
         &self.surface.name
     }
 
+    pub(super) fn surface(&self) -> &'j GeneratedSurface<'g> {
+        self.surface
+    }
+
     pub(super) fn frame(&self) -> &'j str {
         &self.surface.frame
     }
@@ -96,6 +100,31 @@ impl<'j, 'g> Patch<'j, 'g> {
             unknown.name,
             units::text(unknown.dimension, by, 4)
         )
+    }
+
+    /// What rows and columns run over, as samples call it.
+    pub(super) fn labels(&self) -> [String; 2] {
+        let area = &self.area;
+        let Some((_, is_across)) = area.shares else { return area.names.clone() };
+        let sides = if is_across { [["toe", "heel"], ["root", "tip"]] } else { [["root", "tip"], ["toe", "heel"]] };
+        [0, 1].map(|k| {
+            let [first, last] = sides[k];
+            let (low, high) = area.ranges[k];
+            if low <= high { format!("{first} -> {last}") } else { format!("{last} -> {first}") }
+        })
+    }
+
+    /// Points at rows and columns of shares, row by row.
+    pub(super) fn points(&self, shares: &[Vec<f64>; 2]) -> Vec<SurfacePoint> {
+        let [rows, columns] = shares;
+        let places = rows.iter().flat_map(|p| columns.iter().map(move |u| [*p, *u]));
+        let targets: Vec<[f64; 2]> = places
+            .map(|place| {
+                let [pass, along] = self.values(place);
+                self.area.at(pass, along)
+            })
+            .collect();
+        self.problem.solve(&targets, [rows.len(), columns.len()]).0
     }
 
     /// Exact points on a lattice of shares.

@@ -31,7 +31,7 @@ pub(super) struct LeftAt {
 pub(super) struct Plan {
     /// The shares of the passes, and of the positions on each.
     pub(super) shares: [Vec<f64>; 2],
-    /// The highest cusp.
+    /// The highest cusp, less the stock.
     pub(super) cusp: LeftAt,
     /// What straight blocks leave at the most and at the least, less the stock.
     pub(super) blocks: [LeftAt; 2],
@@ -41,7 +41,7 @@ pub(super) struct Plan {
     pub(super) block: f64,
 }
 
-fn evenly(count: usize) -> Vec<f64> {
+pub(super) fn evenly(count: usize) -> Vec<f64> {
     (0..count).map(|k| k as f64 / (count - 1) as f64).collect()
 }
 
@@ -68,6 +68,7 @@ impl Planner<'_, '_, '_> {
         let passes = evenly(self.passes()?);
         let along = evenly(self.positions(&passes)?);
         let cusp = self.highest_cusp(&passes)?;
+        let cusp = LeftAt { height: cusp.height - self.stock(), ..cusp };
         let blocks = self.left_by_blocks(&passes, &along, &(0..passes.len()).collect::<Vec<usize>>())?;
         let steps = |k: usize, count: usize| {
             let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[k])).fold(0.0, f64::max);
@@ -158,7 +159,7 @@ impl Planner<'_, '_, '_> {
     }
 
     /// Cusps between all neighbouring passes, or the two of one gap, at places along them: gap by gap.
-    fn cusps(&self, passes: &[f64], columns: &[f64], gap: Option<usize>) -> Result<Vec<LeftAt>, NotDone> {
+    pub(super) fn cusps(&self, passes: &[f64], columns: &[f64], gap: Option<usize>) -> Result<Vec<LeftAt>, NotDone> {
         let across: Vec<PoseSeries> = columns.iter().map(|share| self.fields.surface.across(*share)).collect();
         let gaps = gap.map_or(0..passes.len() - 1, |gap| gap..gap + 1);
         let (fields, cutter) = (self.fields, &self.cutter.cutting);

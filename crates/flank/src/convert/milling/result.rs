@@ -36,6 +36,8 @@ pub struct MillResult {
     pub path_length: Option<f64>,
     /// The highest ridge between passes.
     pub cusp: Option<HeightLeft>,
+    /// What the passes leave at points of the milled part.
+    pub map: Option<HeightMap>,
     /// What straight blocks leave at the most and at the least, beside the stock; negative where they cut too deep.
     pub blocks: Option<[HeightLeft; 2]>,
     /// Whether the cutter goes straight in a block (tool-centre control), else all axes do.
@@ -136,12 +138,26 @@ pub struct VerifiedProgram {
     pub blocks: usize,
     /// Whether its words are of the cutter in the work (tool-centre control), else of the axes.
     pub tool_centre_control: bool,
-    /// The most and the least that it leaves at the points of the map, beside the stock.
+    /// At points of the milled part.
+    #[serde(flatten)]
+    pub map: HeightMap,
+}
+
+/// What is left at points of the milled part of a surface: the middles of equal cells.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct HeightMap {
+    /// Rows of cells, by the coordinate that passes are counted by.
+    pub rows: usize,
+    /// Columns of cells, by the coordinate that passes run along.
+    pub columns: usize,
+    /// The most and the least that is left at the points, beside the stock; null where the cutter passes none of them.
     pub left: Option<[HeightLeft; 2]>,
-    /// Points of the map over which no block passes.
+    /// Points that the cutter does not pass over.
     pub untouched: usize,
-    /// Points of the map.
+    /// Points.
     pub points: usize,
+    /// What is left beside the stock at each, row by row, um; null where the cutter does not pass.
+    pub heights_um: Vec<Option<f64>>,
 }
 
 impl Answer for MillResult {

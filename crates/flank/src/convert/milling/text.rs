@@ -4,19 +4,24 @@ use std::fmt;
 
 use flank_export::fixed;
 
-use super::result::{ClearanceKept, HeightLeft, MillResult, VerifiedProgram};
+use super::result::{ClearanceKept, HeightLeft, HeightMap, MillResult, VerifiedProgram};
 use crate::project::units;
 
 impl fmt::Display for MillResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let MillResult { job, milling, surface, frame, cutter, .. } = self;
-        writeln!(f, "milling {milling} of {job}: {surface} ({frame}) with {cutter}\n")?;
+        writeln!(f, "{}\n", self.heading())?;
         self.facts().iter().try_for_each(|(name, text)| writeln!(f, "  {name:12} {text}"))?;
         if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
     }
 }
 
 impl MillResult {
+    /// What mills what.
+    pub(crate) fn heading(&self) -> String {
+        let MillResult { job, milling, surface, frame, cutter, .. } = self;
+        format!("milling {milling} of {job}: {surface} ({frame}) with {cutter}")
+    }
+
     /// What is known of it: names with what belongs to them.
     pub(crate) fn facts(&self) -> Vec<(String, String)> {
         let mut facts: Vec<(&str, String)> = Vec::new();
@@ -33,6 +38,7 @@ impl MillResult {
         if let Some(cusp) = &self.cusp {
             facts.push(("cusps", format!("at most {}", at(cusp))));
         }
+        facts.extend(self.map.iter().flat_map(of_map));
         if let Some([most, least]) = &self.blocks {
             let how = if self.tool_centre_control { "the cutter goes straight" } else { "the axes go straight" };
             facts.push(("blocks", format!("{how}; left {}", at(most))));
@@ -65,15 +71,21 @@ impl MillResult {
 }
 
 fn of_program(program: &VerifiedProgram) -> Vec<(&'static str, String)> {
-    let VerifiedProgram { file, blocks, untouched, points, .. } = program;
+    let VerifiedProgram { file, blocks, map, .. } = program;
     let words = if program.tool_centre_control { "the cutter in the work" } else { "the axes" };
-    let mut facts =
-        vec![("program", format!("{file}: {}, words of {words}", units::counted(*blocks, "cutting block")))];
-    if let Some([most, least]) = &program.left {
+    let blocks = units::counted(*blocks, "cutting block");
+    let mut facts = vec![("program", format!("{file}: {blocks}, words of {words}"))];
+    facts.extend(of_map(map));
+    facts
+}
+
+fn of_map(map: &HeightMap) -> Vec<(&'static str, String)> {
+    let HeightMap { rows, columns, untouched, .. } = map;
+    let mut facts = vec![("map", format!("{rows} x {columns} points, {untouched} of them not passed over"))];
+    if let Some([most, least]) = &map.left {
         facts.push(("left", format!("at most {}", at(most))));
         facts.push(("", format!("at least {}", at(least))));
     }
-    facts.push(("map", format!("{points} points, {untouched} of them not passed over")));
     facts
 }
 

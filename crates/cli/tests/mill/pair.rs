@@ -1,0 +1,162 @@
+//! Pairs with a milled flank beside the generated one.
+
+use std::f64::consts::PI;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::support::{flank, folder, self_contained, text, written};
+use crate::text_of;
+
+fn contact(spec: &str, out: &Path, arguments: &[&str]) -> Value {
+    let out = out.to_str().expect("a plain path");
+    let run = flank(&[&["contact", spec, "--out", out, "--no-picture", "--json"][..], arguments].concat());
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    // one document for each contact
+    let told = text(&run.stdout);
+    let mut documents = serde_json::Deserializer::from_str(&told).into_iter::<Value>();
+    documents.next().expect("a contact").expect("JSON")
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    value.as_array().expect("numbers").iter().map(|x| x.as_f64().expect("a number")).collect()
+}
+
+/// The milled places of one column in the middle, row by row: position, normal, and what is left, mm.
+fn column(file: &Path, surface: &str) -> Vec<([f64; 3], [f64; 3], f64)> {
+    let told = text_of(file);
+    let mut rows = told.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+    let header = rows.next().expect("a header");
+    let at = ["j", "x", "y", "z", "nx", "ny", "nz", "left"]
+        .map(|name| header.iter().position(|title| *title == name).expect("a column"));
+    rows.filter(|row| row[0] == surface && row[at[0]] == "20")
+        .map(|row| {
+            let [_, x, y, z, nx, ny, nz, left] = at.map(|k| row[k].parse::<f64>().expect("a number"));
+            ([x, y, z], [nx, ny, nz], 1e-3 * left)
+        })
+        .collect()
+}
+
+/// A spur pinion with ridges along its teeth: each ridge is a line beside the involute, and where the mate's involute meets that, its polar
+/// angle says in closed form how far the gear is turned.
+#[test]
+fn ridges_along_a_spur_tooth_turn_the_gear_as_involutes_say() {
+    const SPECS: [&str; 8] = [
+        "functions/hobbing",
+        "machines/parallel_pair",
+        "machines/hobbing_6axis",
+        "machines/rack_generating",
+        "tools/rack",
+        "pairs/spur_pair",
+        "machines/five_axis_table_table",
+        "tools/end_mills",
+    ];
+    let out = folder("milled_spur");
+    let library = self_contained(&SPECS);
+    let job = "job milled extends spur_pair {\n machine mill = five_axis_table_table(work_z: 60 mm)\n \
+               tool ball = ball_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)\n mount ball on mill.cutter\n \
+               mill finish of pinion_flank with ball.cutting in mill.work {\n passes rho: 35 mm .. 39 mm by 40\n \
+               along z: -9 mm .. 9 mm by 3\n lead 5 deg\n tilt 70 deg\n }\n}\n";
+    let spec = written(&out, "milled.chain", &format!("{library}\n{job}"));
+    let found = contact(&spec, &out, &["drive_side", "--job", "milled", "--milled", "finish"]);
+    let milled = &found["milled"];
+    let ridges = column(&out.join("milled.drive_side.finish.csv"), "pinion_flank as it is milled");
+    assert_eq!(ridges.len(), 79, "passes and the ridges between them");
+
+    let (module, alpha) = (3.0, 20f64.to_radians());
+    let (teeth, shift) = ([24.0, 37.0], [0.2, -0.2]);
+    let radius = teeth.map(|teeth| 0.5 * module * teeth);
+    let involute = |angle: f64| angle.tan() - angle;
+    // the polar angle of a flank at a radius
+    let flank = |of: usize, at: f64| {
+        let half_tooth = (0.5 * PI + 2.0 * shift[of] * alpha.tan()) / teeth[of] + involute(alpha);
+        PI / teeth[of] - half_tooth + involute((radius[of] * alpha.cos() / at).acos())
+    };
+    let gear_tip = radius[1] + (1.0 + shift[1]) * module;
+    // the lag at which the gear's involute goes through a place of the pinion
+    let lag = |[x, y]: [f64; 2], turn: f64| -> Option<f64> {
+        let (s, c) = turn.sin_cos();
+        let seen = [c * x - s * y - radius[0] - radius[1], s * x + c * y];
+        let far = seen[0].hypot(seen[1]);
+        let is_on_tooth = far <= gear_tip && far >= radius[1] * alpha.cos() * 1.001;
+        let turned = seen[1].atan2(seen[0]) - flank(1, far) - (PI - PI / teeth[1] - teeth[0] / teeth[1] * turn);
+        is_on_tooth.then(|| (turned + PI).rem_euclid(2.0 * PI) - PI)
+    };
+    for ([x, y, _], _, left) in &ridges {
+        let rho = x.hypot(*y);
+        assert!((y.atan2(*x) - flank(0, rho)).abs() < 1e-9, "the places lie on the involute");
+        assert!(*left > -1e-9, "{left}");
+    }
+    // how the mate is turned by the highest of all places: ridges hold it back or push it on, which the steel says
+    let sign = {
+        let ([x, y, _], [nx, ny, _], _) = ridges[40];
+        let turn = numbers(&milled["rolls"])[0].to_radians();
+        let [on, over] = [0.0, 1e-3].map(|h| lag([x + h * nx, y + h * ny], turn).expect("within reach"));
+        (over - on).signum()
+    };
+    let (rolls, errors) = (numbers(&milled["rolls"]), numbers(&milled["milled"]));
+    assert!(rolls.len() > 60 && rolls.len() == errors.len());
+    let mut most = f64::NEG_INFINITY;
+    for (turn, error) in rolls.iter().zip(&errors) {
+        let all = [-2.0, -1.0, 0.0, 1.0, 2.0].into_iter().flat_map(|pair| {
+            let turn = turn.to_radians() + pair * 2.0 * PI / teeth[0];
+            ridges.iter().skip(1).step_by(2).filter_map(move |([x, y, _], [nx, ny, _], left)| {
+                Some(sign * lag([x + left * nx, y + left * ny], turn)?)
+            })
+        });
+        // teeth of other pitches are no mates
+        let expected = 1e6 * sign * all.filter(|lag| lag.abs() < 1e-3).fold(f64::NEG_INFINITY, f64::max);
+        // the lag is followed to first order: 0.06 mrad squared on a radius of 50 mm are 0.2 nm, over the lever 5 nrad
+        assert!((error - expected).abs() < 0.02, "{turn} deg: {error} urad, expected {expected}");
+        most = most.max(sign * error);
+    }
+    // and it is not nothing: the ridges in microns over the lever of the base circle
+    let bound = milled["at_most"].as_f64().unwrap();
+    assert!(most > 0.5 * bound && most < bound * (1.0 + 1e-6), "{most} {bound}");
+}
+
+/// Passes twice as near leave a quarter of the error, and none leaves more than its ridge over the lever.
+#[test]
+fn the_milled_pair_tends_to_the_generated_one_with_the_square_of_the_step() {
+    const SPECS: [&str; 8] = [
+        "functions/bevel",
+        "functions/blanks_19x62",
+        "machines/bevel_pair",
+        "machines/cradle",
+        "tools/face_mill",
+        "pairs/bevel_19x62",
+        "machines/five_axis_table_table",
+        "tools/end_mills",
+    ];
+    let out = folder("milled_bevel");
+    let library = self_contained(&SPECS);
+    let means = [40, 79, 157].map(|passes| {
+        let job = format!(
+            "job milled extends bevel_19x62 {{\n machine mill = five_axis_table_table(work_z: 60 mm)\n \
+             tool ball = ball_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)\n mount ball on mill.cutter\n \
+             mill finish of pinion_concave with ball.cutting in mill.work {{\n passes profilewise: 0.28 .. 0.98 by {passes}\n \
+             along lengthwise: 0.02 .. 0.98 by 3\n lead 5 deg\n tilt 70 deg\n }}\n}}\n"
+        );
+        let spec = written(&out, "milled.chain", &format!("{library}\n{job}"));
+        let found = contact(&spec, &out, &["--job", "milled", "--positions", "24", "--milled", "finish", "--format", "csv"]);
+        let milled = &found["milled"];
+        let [generated, errors] = ["generated", "milled"].map(|name| numbers(&milled[name]));
+        let away: Vec<f64> = generated.iter().zip(&errors).map(|(a, b)| (b - a).abs()).collect();
+        let most = away.iter().copied().fold(0.0, f64::max);
+        assert!(most <= milled["at_most"].as_f64().unwrap() * (1.0 + 1e-6), "{most} {milled}");
+        // on each flank the film of the compound is met at fewer places than before
+        let within = [0, 1].map(|k| milled["patterns"][k]["within"].as_u64().unwrap());
+        assert!(within[1] > 0 && within[1] <= within[0], "{within:?}");
+        away.iter().sum::<f64>() / away.len() as f64
+    });
+    for pair in means.windows(2) {
+        // positions meet the ridges at other phases: some percent of the mean
+        assert!((pair[0] / pair[1] / 4.0 - 1.0).abs() < 0.1, "{means:?}");
+    }
+    let refused = flank(&["contact", "specs/pairs/bevel_19x62.chain", "--milled", "finish"]);
+    assert!(
+        text(&refused.stderr).contains("job bevel_19x62 mills nothing: add `mill finish of"),
+        "{}",
+        text(&refused.stderr)
+    );
+}
