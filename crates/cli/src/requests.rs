@@ -251,6 +251,8 @@ impl Mill {
             approach: self.approach,
             spaces: self.spaces,
             verify: self.verify.clone(),
+            clamp: self.clamp.clone(),
+            certify: self.certify,
             evaluator: self.evaluator.evaluator(),
         })
     }

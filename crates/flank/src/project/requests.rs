@@ -532,6 +532,15 @@ impl ContactRequest {
     }
 }
 
+/// A setting of a milling machine that may change.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClampRange {
+    /// With or without the machine's name: `mill.work_z`.
+    pub setting: String,
+    /// The lowest value and the highest one, with their units.
+    pub ends: [String; 2],
+}
+
 /// Passes of cutters over surfaces.
 #[derive(Clone, Debug)]
 pub struct MillRequest {
@@ -557,6 +566,10 @@ pub struct MillRequest {
     pub spaces: u32,
     /// A program whose blocks are measured on the surface.
     pub verify: Option<PathBuf>,
+    /// Settings of the milling machine that may place the work otherwise, so that its axes go slower.
+    pub clamp: Vec<ClampRange>,
+    /// Also proofs that the cutter stays clear between its positions, so much nearer than it is asked for, mm.
+    pub certify: Option<f64>,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
 }
@@ -576,6 +589,8 @@ impl MillRequest {
             approach: 5.0,
             spaces: 1,
             verify: None,
+            clamp: Vec::new(),
+            certify: None,
             evaluator: EvaluatorOptions::default(),
         }
     }

@@ -5,6 +5,7 @@
 //! of the share of the way along it.
 
 pub(crate) mod axes;
+pub(crate) mod clear;
 pub(crate) mod cusp;
 pub(crate) mod distance;
 pub(crate) mod frame;
@@ -12,3 +13,4 @@ pub(crate) mod height;
 pub(crate) mod outline;
 pub(crate) mod pose;
 pub(crate) mod series;
+pub(crate) mod side;
