@@ -7,7 +7,7 @@ const listed = (rule) => optional(seq(list(rule), optional(',')));
 // words that mean something only where nothing else can stand, and are names elsewhere
 const FREE = [
   'profile', 'cut', 'nc', 'error', 'insert', 'close', 'unknown', 'solid', 'contact', 'want', 'mill', 'expect', 'step', 'as', 'keep',
-  'along', 'about', 'towards', 'where', 'for', 'with', 'of', 'near', 'within', 'travel', 'nothing', 'passes', 'both', 'ways', 'clear',
+  'along', 'about', 'towards', 'where', 'for', 'with', 'of', 'near', 'within', 'travel', 'nothing', 'passes', 'side', 'both', 'ways', 'clear',
   'scallop', 'chord', 'lead', 'tilt', 'stock', 'linear', 'rotary', 'inside', 'outside',
 ];
 const names = (...without) => ($) => choice($.identifier, ...FREE.filter((word) => !without.includes(word)).map((word) => alias(word, $.identifier)));
@@ -119,7 +119,7 @@ module.exports = grammar({
       'mill', field('name', $._name), 'of', $.path, 'with', $.path, 'in', $.path, '{',
       repeat(choice($.passes, $.attitude, $.both_ways, $.clearance)), '}',
     ),
-    passes: ($) => seq(choice('passes', 'along'), $._name, optional($.coordinate), ':', $.range, optional(','), choice('scallop', 'step', 'chord', 'by'), $.expression),
+    passes: ($) => seq(choice('passes', 'side', 'along'), $._name, optional($.coordinate), ':', $.range, optional(','), choice('scallop', 'step', 'chord', 'by'), $.expression),
     attitude: ($) => seq(choice('lead', 'tilt', 'stock'), $.expression),
     both_ways: () => seq('both', 'ways'),
     clearance: ($) => seq('clear', 'of', $.path, 'by', $.expression, 'with', $.path),

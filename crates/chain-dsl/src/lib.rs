@@ -67,8 +67,8 @@ pub use load::files::{Buffers, Disk, Files};
 pub use load::{read_file, read_other_file};
 pub use model::{
     Axis, BlockLength, Contact, ContactCondition, ContactQuantity, Coordinate, CutterPiece, Frame, GeneratedSurface,
-    Generation, Job, LawSource, Machine, MilledArea, Milling, MillingClearance, MountingAxis, NcWord, OutlineCurve,
-    OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample, SampleEnds,
-    SampleGrid, Solid, SolidForm, ToolShape, ValueSource, WantedContact,
+    Generation, Job, LawSource, Machine, MilledArea, Milling, MillingClearance, MillingObstacle, MountingAxis, NcWord,
+    OutlineCurve, OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample,
+    SampleEnds, SampleGrid, Solid, SolidForm, ToolShape, ValueSource, WantedContact,
 };
 pub use values::dimension::{Dimension, unit_size};

@@ -206,6 +206,8 @@ pub enum PassSpacing {
     Step(f64),
     /// So many passes.
     Count(usize),
+    /// One pass, with the straight side of the cutter, whose axis is free at so many places along it.
+    Side(usize),
 }
 
 /// How long the blocks of a pass are.
@@ -219,11 +221,25 @@ pub enum BlockLength {
     Count(usize),
 }
 
+/// What a part of a cutter keeps clear of.
+#[derive(Clone, Debug)]
+pub enum MillingObstacle<'g> {
+    /// A surface of the job, as an index.
+    Surface(usize),
+    /// A surface of a tool that stands still against the work: a jaw, an arbor, a part of the machine.
+    Fixture {
+        /// Its smooth pieces in the frame that it sits on.
+        pieces: Vec<CutterPiece<'g>>,
+        /// From the work to that frame.
+        t_work_fixture: Chain<'g>,
+    },
+}
+
 /// A surface that a part of the cutter keeps clear of.
 #[derive(Clone, Debug)]
 pub struct MillingClearance<'g> {
-    /// The surface, as an index into those of the job.
-    pub surface: usize,
+    /// What is kept clear of.
+    pub obstacle: MillingObstacle<'g>,
     /// How far, mm.
     pub distance: f64,
     /// The part of the cutter, as `e.whole`.

@@ -256,6 +256,8 @@ impl Mill {
             rows: self.rows,
             columns: self.columns,
             map: self.map.clone(),
+            clamp: self.clamp.clone(),
+            certify: self.certify,
             evaluator: self.evaluator.evaluator(),
         })
     }

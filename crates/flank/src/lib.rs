@@ -77,10 +77,13 @@ pub use contact::result::{
     TransmissionError, VhjRow,
 };
 pub use convert::convert;
+pub use convert::milling::clamp::{ClampedRates, ClampedSetting, Clamping};
 pub use convert::milling::mill;
 pub use convert::milling::result::{
-    BallAt, ClearanceKept, CurvatureAt, HeightLeft, HeightMap, MillResult, MilledAxis, VerifiedProgram,
+    BallAt, ClearanceKept, CurvatureAt, HeightLeft, HeightMap, MillResult, MilledAxis, ProvenClearance,
+    VerifiedProgram,
 };
+pub use convert::milling::side::SideLeft;
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
     FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, ToolSymmetry,
@@ -127,8 +130,8 @@ pub use project::monitor::{Monitor, Unwatched, Work};
 pub use project::quantity::{Extent, NamedUnit, NamedValue, Travel, UnitSymbol};
 pub use project::remark::{Message, NotDone, NotDoneKind, Remark, RemarkKind};
 pub use project::requests::{
-    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FIT_STARTS, FitRequest, JobSelection, KeptPlace,
-    MeasureRequest, MeshRequest, MillRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
+    ClampRange, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, FIT_STARTS, FitRequest, JobSelection,
+    KeptPlace, MeasureRequest, MeshRequest, MillRequest, MountingError, Onto, PlotRequest, ReportRequest, SolidRequest,
     SolveRequest, SynthesisRequest, ToleranceRequest, ToleratedAmount, ViewRequest, WantedEaseOff,
 };
 pub use project::session::EvaluatorOptions;

@@ -60,14 +60,16 @@ pub use equations::solution::{CutBy, Outcome, Range, Solution};
 pub use equations::system::System;
 pub use equations::tolerance::TOLERANCE;
 pub use milling::axes::MillAxes;
+pub use milling::clear::{Clear, ClearProof};
 pub use milling::cusp::{Cusp, cusp, left_by_block, peak};
 pub use milling::distance::{Nearest, Obstacle, ToolBody};
 pub use milling::frame::{SurfaceFrame, SurfaceFrames};
 pub use milling::height::{Lowest, NormalLine, lowest};
-pub use milling::outline::{Cutter, NoOutline, OutlinePiece};
+pub use milling::outline::{Cutter, NoOutline, OutlinePiece, StraightSide};
 pub use milling::pose::{Bending, CutterPose, Lean, NoPose};
 pub use milling::series::{Moving, PoseField, PoseSeries};
 pub use milling::sweep::{LeftOver, SweptCutter};
+pub use milling::side::{LeftOnWay, SidePass, SideStrip, left_on_way, side_directions};
 pub use newton::least_squares::{
     LeastSquares, LeastSquaresFit, Linearized, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
 };

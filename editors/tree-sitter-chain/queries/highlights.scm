@@ -8,7 +8,7 @@
 
 ["use" "fn" "machine" "extends" "tool" "job" "param" "let" "axis" "frame" "fix" "couple" "surface" "at" "body" "mount" "on" "motion"
  "drive" "trim" "sample" "in" "by" "require" "profile" "cut" "nc" "error" "insert" "close" "unknown" "solid" "contact" "want" "mill"
- "expect" "step" "as" "keep" "along" "about" "towards" "where" "for" "with" "of" "near" "within" "passes" "both" "ways" "clear"
+ "expect" "step" "as" "keep" "along" "about" "towards" "where" "for" "with" "of" "near" "within" "passes" "side" "both" "ways" "clear"
  "scallop" "chord" "lead" "tilt" "stock" "inside" "outside"] @keyword
 ["if" "then" "else"] @conditional
 ["and" "or" "not"] @keyword.operator

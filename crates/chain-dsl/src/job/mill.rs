@@ -7,7 +7,10 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
-use crate::model::{BlockLength, CutterPiece, MilledArea, Milling, MillingClearance, PassSpacing, SampleGrid};
+use crate::model::{
+    BlockLength, CutterPiece, MilledArea, Milling, MillingClearance, MillingObstacle, PassSpacing, SampleGrid,
+    ToolShape,
+};
 use crate::syntax::ast::{self, JobStatement};
 use crate::values::context::{Context, Role};
 use crate::values::dimension::Dimension;
@@ -19,8 +22,11 @@ use super::{Builder, FrameRef};
 const SHARES: [&str; 2] = ["profilewise", "lengthwise"];
 /// More passes, or positions on one, than anybody mills.
 const MOST: f64 = 100_000.0;
+/// Places along a pass at which the axis of a cutter is free: more only follow rounding.
+const MOST_FREE: f64 = 60.0;
 
 const PASSES: &str = "for example `passes profilewise: 0.05 .. 1, scallop 2 um`";
+const SIDE: &str = "for example `side profilewise: 0.05 .. 1 by 8`";
 const ALONG: &str = "for example `along lengthwise: 0 .. 1, chord 0.5 um`";
 
 impl<'g> Builder<'_, 'g> {
@@ -33,7 +39,7 @@ impl<'g> Builder<'_, 'g> {
         });
         for mill in mills {
             self.mills.extend(machine_of(&mill.frame));
-            let bodies = mill.clearances.iter().map(|clearance| &clearance.body);
+            let bodies = mill.clearances.iter().flat_map(|clearance| [&clearance.body, &clearance.surface]);
             for path in [&mill.cutter].into_iter().chain(bodies) {
                 self.named.push(path.segments.iter().map(|segment| segment.node.clone()).collect());
             }
@@ -59,8 +65,13 @@ impl<'g> Builder<'_, 'g> {
         let surface = self.finished(context, &written.surface, job);
         let frame = self.frame(context, &written.frame);
         let cutter = self.cutter(context, &written.cutter);
-        let [passes, along] = [(&written.passes, "passes", PASSES), (&written.along, "along", ALONG)]
+        let is_side = !written.sides.is_empty();
+        let first = if is_side { (&written.sides, "side", SIDE) } else { (&written.passes, "passes", PASSES) };
+        let [passes, along] = [first, (&written.along, "along", ALONG)]
             .map(|(said, word, example)| only(context, written, said, (word, example)));
+        if is_side && self.says_more(context, written) {
+            return None;
+        }
         let (surface, frame, (cutter, sits)) = (surface?, frame?, cutter?);
         let [passes, along] = [passes?, along?];
         let (its, own) = &self.surfaces[surface];
@@ -76,10 +87,13 @@ impl<'g> Builder<'_, 'g> {
         }
         let t_work_tool = Chain::new(context.graph, path.into_iter().flat_map(|(_, steps)| steps).collect());
         let area = self.area(context, surface, [passes, along])?;
-        let spacing = spacing(passes, self.amount(context, passes)?);
-        let blocks = blocks(along, self.amount(context, along)?);
+        let counts = if is_side { [1.0, MOST_FREE] } else { [2.0, MOST] };
+        let spacing = spacing(passes, self.amount(context, passes, counts)?, is_side);
+        let blocks = blocks(along, self.amount(context, along, [2.0, MOST])?);
         let (Some(spacing), Some(blocks)) = (spacing, blocks) else {
-            let (run, allowed) = if spacing.is_none() {
+            let (run, allowed) = if spacing.is_none() && is_side {
+                (passes, "the axis is free at as many places along the pass as `by` says")
+            } else if spacing.is_none() {
                 (passes, "passes lie apart by `scallop`, `step` or `by`")
             } else {
                 (along, "blocks are as long as `chord`, `step` or `by` says")
@@ -119,11 +133,55 @@ impl<'g> Builder<'_, 'g> {
         })
     }
 
+    /// What is said of a pass with the side that its motion leaves no choice of.
+    fn says_more(&self, context: &mut Context<'g>, written: &ast::Mill) -> bool {
+        let passes = written.passes.iter().map(|run| (run.key.span, "passes"));
+        let both = written.both_ways.iter().map(|span| (*span, "both ways"));
+        let leans = written.attitudes.iter().filter(|(word, _)| word.node != "stock");
+        let leans = leans.map(|(word, _)| (word.span, if word.node == "lead" { "lead" } else { "tilt" }));
+        let Some((span, word)) = passes.chain(both).chain(leans).next() else { return false };
+        let message = format!("`{}` says `side` and `{word}`", written.name.node);
+        let help = "one pass with the side of the cutter covers the surface, and the cutter leans as that leaves least";
+        context.report(Diagnostic::new(Code::Milling, span, message).help(help));
+        true
+    }
+
+    fn is_of_tool(&self, path: &ast::Path) -> bool {
+        path.segments.first().is_some_and(|owner| self.tools.iter().any(|(tool, ..)| tool.node == owner.node))
+    }
+
+    /// A surface of a tool that is fixed to the work.
+    fn fixture(&mut self, context: &mut Context<'g>, path: &ast::Path, work: FrameRef) -> Option<MillingObstacle<'g>> {
+        let (pieces, frame) = self.cutter(context, path)?;
+        let steps = self.path_between(context, work, frame, path.span)?;
+        let t_work_fixture = Chain::new(context.graph, steps.into_iter().flat_map(|(_, steps)| steps).collect());
+        let pose = t_work_fixture.pose();
+        let parts = pose.rotation.0.into_iter().chain([pose.translation]).flat_map(|vector| vector.0);
+        let variables = context.graph.variables_of(&parts.collect::<Vec<_>>());
+        let moving = self.machines[work.0]
+            .2
+            .axes
+            .iter()
+            .find(|axis| axis.variable.as_variable().is_some_and(|variable| variables.contains(&variable)));
+        if let Some(axis) = moving {
+            let message =
+                format!("`{}` moves against the work: `{}` turns or shifts it", path.joined(), axis.name.node);
+            let help =
+                "what is kept clear of stands still in the frame of the work: mount it on that or on what carries it";
+            context.report(Diagnostic::new(Code::Milling, path.span, message).help(help));
+            return None;
+        }
+        if let Some(edge) = pieces.iter().find(|piece| matches!(piece.shape, ToolShape::Edge(_))) {
+            let message = format!("`{}` is an edge; a cutter keeps clear of surfaces", edge.name);
+            context.report(Diagnostic::new(Code::Milling, path.span, message));
+            return None;
+        }
+        Some(MillingObstacle::Fixture { pieces, t_work_fixture })
+    }
+
     /// The pieces of a cutter's surface, and the frame that the cutter sits on.
     fn cutter(&mut self, context: &mut Context<'g>, path: &ast::Path) -> Option<(Vec<CutterPiece<'g>>, FrameRef)> {
-        let is_tool =
-            path.segments.first().is_some_and(|owner| self.tools.iter().any(|(tool, ..)| tool.node == owner.node));
-        if !is_tool && path.segments.first().is_some_and(|owner| self.names.contains_key(&owner.node)) {
+        if !self.is_of_tool(path) && path.segments.first().is_some_and(|owner| self.names.contains_key(&owner.node)) {
             let message = format!("`{}` is no surface of a tool", path.joined());
             let help = "name a surface of the cutter: `e.cutting`";
             context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(help));
@@ -205,15 +263,15 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// What a run says behind its word: a height or a distance, or a number.
-    fn amount(&self, context: &mut Context<'g>, run: &ast::MillRun) -> Option<f64> {
+    fn amount(&self, context: &mut Context<'g>, run: &ast::MillRun, [least, most]: [f64; 2]) -> Option<f64> {
         let is_count = run.word.node == "by";
         let (dimension, what) =
             if is_count { (Dimension::NUMBER, "the number") } else { (Dimension::LENGTH, run.word.node.as_str()) };
         let value = context.scalar(&run.value, &self.scope, dimension, what)?;
         let value = context.require_constant(value, run.value.span, what)?;
         let message = match is_count {
-            true if value.fract() != 0.0 || !(2.0..=MOST).contains(&value) => {
-                format!("the number must be a whole number from 2 to {MOST}, not {value}")
+            true if value.fract() != 0.0 || !(least..=most).contains(&value) => {
+                format!("the number must be a whole number from {least} to {most}, not {value}")
             }
             false if value <= 0.0 => format!("`{}` must be above zero", run.word.node),
             _ => return Some(value),
@@ -259,13 +317,18 @@ impl<'g> Builder<'_, 'g> {
         (work, sits): (FrameRef, FrameRef),
         job: &ast::Job,
     ) -> Option<MillingClearance<'g>> {
-        let surface = self.finished(context, &written.surface, job)?;
-        let (its, own) = &self.surfaces[surface];
-        if own.0 == work.0 && own.1 != work.1 {
-            let message = format!("`{}` is given in `{}`, not in `{}`", its.name, its.frame, self.frame_name(work));
-            context.report(Diagnostic::new(Code::Milling, written.surface.span, message));
-            return None;
-        }
+        let obstacle = if self.is_of_tool(&written.surface) {
+            self.fixture(context, &written.surface, work)?
+        } else {
+            let surface = self.finished(context, &written.surface, job)?;
+            let (its, own) = &self.surfaces[surface];
+            if own.0 == work.0 && own.1 != work.1 {
+                let message = format!("`{}` is given in `{}`, not in `{}`", its.name, its.frame, self.frame_name(work));
+                context.report(Diagnostic::new(Code::Milling, written.surface.span, message));
+                return None;
+            }
+            MillingObstacle::Surface(surface)
+        };
         let (body, frame) = self.cutter(context, &written.body)?;
         if frame != sits {
             let message = format!(
@@ -280,7 +343,7 @@ impl<'g> Builder<'_, 'g> {
         let distance = context.scalar(&written.distance, &self.scope, Dimension::LENGTH, "the clearance")?;
         let distance = context.require_constant(distance, written.distance.span, "the clearance")?;
         let body_name = written.body.joined();
-        Some(MillingClearance { surface, distance, body_name, body, written: written.surface.span })
+        Some(MillingClearance { obstacle, distance, body_name, body, written: written.surface.span })
     }
 }
 
@@ -307,8 +370,10 @@ fn only<'w>(
     }
 }
 
-fn spacing(run: &ast::MillRun, amount: f64) -> Option<PassSpacing> {
+fn spacing(run: &ast::MillRun, amount: f64, is_side: bool) -> Option<PassSpacing> {
     match run.word.node.as_str() {
+        "by" if is_side => Some(PassSpacing::Side(amount as usize)),
+        _ if is_side => None,
         "scallop" => Some(PassSpacing::Scallop(amount)),
         "step" => Some(PassSpacing::Step(amount)),
         "by" => Some(PassSpacing::Count(amount as usize)),

@@ -108,7 +108,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::nc_word => return parts.push(nc_word(pair)),
         Rule::entry => return parts.push(entry(pair)),
         Rule::limit => return parts.push(limit(pair)),
-        Rule::passes | Rule::along_passes => return parts.push(mill_run(pair)),
+        Rule::passes | Rule::side_pass | Rule::along_passes => return parts.push(mill_run(pair)),
         Rule::attitude | Rule::both_ways | Rule::clearance => Kind::Statement,
         Rule::spacing => Kind::Steps,
         Rule::machine | Rule::tool | Rule::job | Rule::tool_surface | Rule::profile | Rule::mill => Kind::Block,

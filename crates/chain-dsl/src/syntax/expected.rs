@@ -258,6 +258,7 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_with => "with",
         Rule::kw_of => "of",
         Rule::kw_passes => "passes",
+        Rule::kw_side => "side",
         Rule::kw_both => "both",
         Rule::kw_ways => "ways",
         Rule::kw_clear => "clear",

@@ -291,6 +291,7 @@ impl Piece<'_> {
             cutter: self.path_after("with"),
             frame: self.path_after("in"),
             passes: Vec::new(),
+            sides: Vec::new(),
             along: Vec::new(),
             attitudes: Vec::new(),
             both_ways: Vec::new(),

@@ -47,7 +47,7 @@ const CONNECTING: &[&str] = &["extends", "on", "in", "by", "if", "then", "else",
 /// Words inside statements that are names elsewhere.
 const INSIDE: &[&str] = &[
     "step", "as", "keep", "along", "about", "towards", "where", "for", "with", "of", "near", "within", "travel",
-    "nothing", "passes", "both", "ways", "clear", "scallop", "chord", "lead", "tilt", "stock",
+    "nothing", "passes", "side", "both", "ways", "clear", "scallop", "chord", "lead", "tilt", "stock",
 ];
 
 /// What an axis is, and the sides of a surface.

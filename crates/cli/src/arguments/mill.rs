@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use flank::{CutterFormat, NcDialect, PointFormat};
+use flank::{ClampRange, CutterFormat, NcDialect, PointFormat};
 
 use super::choice::{described, names};
+use super::sweep::spaced;
 use super::{EvaluatorArguments, JobArguments, count, folder, length};
 
 #[derive(Args, Debug)]
@@ -17,6 +18,7 @@ Examples:
   flank mill specs/bevel/milled_pinion.chain
   flank mill specs/bevel/milled_pinion.chain --format csv,apt --nc linuxcnc,siemens --feed 800 --spindle 12000
   flank mill specs/bevel/milled_pinion.chain --nc siemens --tcp --spaces 19
+  flank mill specs/bevel/milled_pinion.chain --clamp mill.work_z=20mm..120mm
   flank mill specs/bevel/milled_pinion.chain --verify build/milled_pinion.finish.ngc")]
 pub(crate) struct Mill {
     #[command(flatten)]
@@ -59,11 +61,31 @@ pub(crate) struct Mill {
     /// Files with these points: csv, json, parquet, stl, obj, 3mf, vtp, several with commas
     #[arg(long, value_name = "FORMAT", value_parser = names::<PointFormat>(), value_delimiter = ',', default_value = "csv")]
     pub(crate) map: Vec<PointFormat>,
+    /// Look for the value of a setting of the milling machine between two with which the axes go slowest: 'mill.work_z=20mm..120mm'; several together
+    #[arg(long, value_name = "NAME=FROM..TO", value_parser = clamp_range, allow_hyphen_values = true)]
+    pub(crate) clamp: Vec<ClampRange>,
+    /// Also prove that the cutter comes nowhere nearer to what it keeps clear of than is asked for, less this: on all blocks, between positions, too
+    #[arg(long, value_name = "LENGTH", num_args = 0..=1, require_equals = true, default_missing_value = "1um", value_parser = length)]
+    pub(crate) certify: Option<f64>,
     /// Print the numbers as JSON
     #[arg(long)]
     pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) evaluator: EvaluatorArguments,
+}
+
+/// `mill.work_z=20mm..120mm`
+fn clamp_range(text: &str) -> Result<ClampRange, String> {
+    let wanted = || "write NAME=FROM..TO, for example mill.work_z=20mm..120mm".to_string();
+    let (setting, ends) = text.split_once('=').ok_or_else(wanted)?;
+    let (from, to) = ends.split_once("..").ok_or_else(wanted)?;
+    let ends = [from, to].map(|end| spaced(end.trim()));
+    let setting = setting.trim().to_string();
+    if setting.is_empty() || ends.iter().any(String::is_empty) {
+        Err(wanted())
+    } else {
+        Ok(ClampRange { setting, ends })
+    }
 }
 
 fn positive(text: &str) -> Result<f64, String> {

@@ -252,7 +252,7 @@ fn varied(text: &str) -> Result<VariedRange, String> {
 }
 
 /// A number and its unit with a blank between, as the language reads them.
-fn spaced(text: &str) -> String {
+pub(super) fn spaced(text: &str) -> String {
     let unit = text.find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E').unwrap_or(text.len());
     let (number, unit) = text.split_at(unit);
     format!("{} {}", number.trim(), unit.trim()).trim().to_string()

@@ -537,6 +537,15 @@ impl ContactRequest {
     }
 }
 
+/// A setting of a milling machine that may change.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ClampRange {
+    /// With or without the machine's name: `mill.work_z`.
+    pub setting: String,
+    /// The lowest value and the highest one, with their units.
+    pub ends: [String; 2],
+}
+
 /// Passes of cutters over surfaces.
 #[derive(Clone, Debug)]
 pub struct MillRequest {
@@ -568,6 +577,10 @@ pub struct MillRequest {
     pub columns: u32,
     /// Files with these points.
     pub map: Vec<PointFormat>,
+    /// Settings of the milling machine that may place the work otherwise, so that its axes go slower.
+    pub clamp: Vec<ClampRange>,
+    /// Also proofs that the cutter stays clear between its positions, so much nearer than it is asked for, mm.
+    pub certify: Option<f64>,
     /// How the numbers are worked out.
     pub evaluator: EvaluatorOptions,
 }
@@ -590,6 +603,8 @@ impl MillRequest {
             rows: 15,
             columns: 31,
             map: vec![PointFormat::Csv],
+            clamp: Vec::new(),
+            certify: None,
             evaluator: EvaluatorOptions::default(),
         }
     }

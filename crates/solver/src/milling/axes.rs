@@ -62,16 +62,27 @@ impl MillAxes {
 
     /// The axes at a pose on one of both elbows, mm and radians: angles within half a turn to both sides of zero.
     pub fn at(&self, pose: &CutterPose, elbow: usize) -> Vec<f64> {
-        let out_of_spindle = -Vector3::from(pose.axis);
-        let least = out_of_spindle.iamin();
-        let across = out_of_spindle.cross(&Vector3::ith(least, 1.0)).normalize() * self.across;
-        let mut inputs = [0.0; 9];
-        for k in 0..3 {
-            (inputs[k], inputs[3 + k], inputs[6 + k]) = (out_of_spindle[k], across[k], pose.tip[k]);
-        }
-        let mut out = vec![0.0; self.axes];
-        ScalarEvaluator::new(&self.elbows[elbow]).run(&inputs, &mut out);
-        out
+        let [x, y, z] = pose.tip;
+        let [i, j, k] = pose.axis;
+        self.at_each(&[[x, y, z, i, j, k]], elbow).remove(0)
+    }
+
+    /// The same at many poses: origin of the tool and axis towards the spindle.
+    pub fn at_each(&self, poses: &[[f64; 6]], elbow: usize) -> Vec<Vec<f64>> {
+        let mut evaluator = ScalarEvaluator::new(&self.elbows[elbow]);
+        let at = |[x, y, z, i, j, k]: &[f64; 6]| {
+            let out_of_spindle = -Vector3::new(*i, *j, *k);
+            let least = out_of_spindle.iamin();
+            let across = out_of_spindle.cross(&Vector3::ith(least, 1.0)).normalize() * self.across;
+            let mut inputs = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, *x, *y, *z];
+            for k in 0..3 {
+                (inputs[k], inputs[3 + k]) = (out_of_spindle[k], across[k]);
+            }
+            let mut out = vec![0.0; self.axes];
+            evaluator.run(&inputs, &mut out);
+            out
+        };
+        poses.iter().map(at).collect()
     }
 
     /// Origin and axis of the cutter, towards the spindle, in the work's frame where the axes stand so.

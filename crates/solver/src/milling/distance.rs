@@ -1,6 +1,6 @@
 //! How near a part of a cutter, with neck and holder, comes to a surface.
 
-use crate::milling::outline::OutlinePiece;
+use crate::milling::outline::{OutlinePiece, meridian};
 use crate::milling::series::PoseField;
 
 /// Points of a surface that are looked at before the nearest one is solved.
@@ -31,7 +31,7 @@ pub struct Nearest {
 /// A surface between four lines that a body keeps clear of.
 #[derive(Clone, Debug)]
 pub struct Obstacle {
-    surface: PoseField,
+    pub(super) surface: PoseField,
     coarse: Vec<([f64; 2], [f64; 3])>,
     /// No point of the surface is farther from the nearest of those than this, mm.
     reach: f64,
@@ -40,9 +40,7 @@ pub struct Obstacle {
 impl ToolBody {
     /// The distance of a point where the cutter stands so, mm; negative inside.
     pub fn distance(&self, pose: &[f64; 6], point: [f64; 3]) -> f64 {
-        let y = [0, 1, 2].map(|k| point[k] - pose[k]);
-        let z = y[0] * pose[3] + y[1] * pose[4] + y[2] * pose[5];
-        let rho = (y[0] * y[0] + y[1] * y[1] + y[2] * y[2] - z * z).max(0.0).sqrt();
+        let [rho, z] = meridian(pose, point);
         let away = self.pieces.iter().map(|piece| away(piece, [rho, z])).fold(f64::INFINITY, f64::min);
         let crossed: u32 = self.pieces.iter().map(|piece| crossings(piece, [rho, z])).sum();
         if crossed % 2 == 1 { -away } else { away }

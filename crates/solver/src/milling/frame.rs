@@ -54,29 +54,30 @@ impl SurfaceFrames {
     pub fn at<'u>(&self, points: impl Iterator<Item = &'u [f64]>) -> Vec<Option<SurfaceFrame>> {
         let mut evaluator = ScalarEvaluator::new(&self.tape);
         let mut out = vec![0.0; self.tape.output_count()];
+        let mut scratch = Scratch::new(self.unknowns);
         points
             .map(|unknowns| {
                 evaluator.run(unknowns, &mut out);
-                self.frame(&out)
+                self.frame(&out, &mut scratch)
             })
             .collect()
     }
 
-    fn frame(&self, out: &[f64]) -> Option<SurfaceFrame> {
+    fn frame(&self, out: &[f64], scratch: &mut Scratch) -> Option<SurfaceFrame> {
         let count = self.unknowns;
         let (matrix, slopes) = out[6..].split_at(count * count);
         // the unknowns follow each coordinate while the constraints hold
-        let followed = [count - 2, count - 1].map(|which| {
-            let right: Vec<f64> = (0..count).map(|row| if row == which { 1.0 } else { 0.0 }).collect();
-            solved(matrix.to_vec(), right)
-        });
-        let [first, second] = followed;
-        let followed = [first?, second?];
+        scratch.matrix.copy_from_slice(matrix);
+        for (row, right) in scratch.right.iter_mut().enumerate() {
+            *right = [count - 2, count - 1].map(|which| if row == which { 1.0 } else { 0.0 });
+        }
+        scratch.solve()?;
+        let followed = &scratch.right;
         let along = |from: usize| {
-            followed.each_ref().map(|rates| {
+            [0, 1].map(|which| {
                 let part = |k: usize| -> f64 {
                     let row = &slopes[(from + k) * count..][..count];
-                    row.iter().zip(rates).map(|(slope, rate)| slope * rate).sum()
+                    row.iter().zip(followed).map(|(slope, rates)| slope * rates[which]).sum()
                 };
                 [part(0), part(1), part(2)]
             })
@@ -101,34 +102,50 @@ impl SurfaceFrame {
     }
 }
 
-/// The solution of a square system, row by row, by elimination with row pivots.
-fn solved(mut matrix: Vec<f64>, mut right: Vec<f64>) -> Option<Vec<f64>> {
-    let count = right.len();
-    let sizes: Vec<f64> =
-        matrix.chunks(count).map(|row| row.iter().fold(0.0, |most: f64, x| most.max(x.abs()))).collect();
-    let mut scale = sizes;
-    for k in 0..count {
-        let weight = |row: usize| matrix[row * count + k].abs() / scale[row];
-        let pivot = (k..count).max_by(|a, b| weight(*a).total_cmp(&weight(*b)))?;
-        // a NaN is no pivot
-        let is_pivot = weight(pivot) > NO_PIVOT;
-        if !is_pivot {
-            return None;
-        }
-        if pivot != k {
-            (0..count).for_each(|j| matrix.swap(k * count + j, pivot * count + j));
-            right.swap(k, pivot);
-            scale.swap(k, pivot);
-        }
-        for row in k + 1..count {
-            let factor = matrix[row * count + k] / matrix[k * count + k];
-            (k..count).for_each(|j| matrix[row * count + j] -= factor * matrix[k * count + j]);
-            right[row] -= factor * right[k];
-        }
+/// A square system, row by row, with two right sides.
+struct Scratch {
+    matrix: Vec<f64>,
+    right: Vec<[f64; 2]>,
+    scale: Vec<f64>,
+}
+
+impl Scratch {
+    fn new(count: usize) -> Scratch {
+        Scratch { matrix: vec![0.0; count * count], right: vec![[0.0; 2]; count], scale: vec![0.0; count] }
     }
-    for k in (0..count).rev() {
-        let sum: f64 = (k + 1..count).map(|j| matrix[k * count + j] * right[j]).sum();
-        right[k] = (right[k] - sum) / matrix[k * count + k];
+
+    /// Puts the solutions in the place of the right sides, by elimination with row pivots; `None` without a pivot.
+    fn solve(&mut self) -> Option<()> {
+        let Scratch { matrix, right, scale } = self;
+        let count = right.len();
+        for (row, scale) in matrix.chunks(count).zip(scale.iter_mut()) {
+            *scale = row.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        }
+        for k in 0..count {
+            let weight = |row: usize| matrix[row * count + k].abs() / scale[row];
+            let pivot = (k..count).max_by(|a, b| weight(*a).total_cmp(&weight(*b)))?;
+            // a NaN is no pivot
+            let is_pivot = weight(pivot) > NO_PIVOT;
+            if !is_pivot {
+                return None;
+            }
+            if pivot != k {
+                (0..count).for_each(|j| matrix.swap(k * count + j, pivot * count + j));
+                right.swap(k, pivot);
+                scale.swap(k, pivot);
+            }
+            for row in k + 1..count {
+                let factor = matrix[row * count + k] / matrix[k * count + k];
+                (k..count).for_each(|j| matrix[row * count + j] -= factor * matrix[k * count + j]);
+                let [a, b] = right[k];
+                right[row] = [right[row][0] - factor * a, right[row][1] - factor * b];
+            }
+        }
+        for k in (0..count).rev() {
+            let sum = |which: usize| -> f64 { (k + 1..count).map(|j| matrix[k * count + j] * right[j][which]).sum() };
+            let sums = [sum(0), sum(1)];
+            right[k] = [0, 1].map(|which| (right[k][which] - sums[which]) / matrix[k * count + k]);
+        }
+        Some(())
     }
-    Some(right)
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::milling::outline::{Cutter, CutterArc, OutlinePiece};
+use crate::milling::outline::{Cutter, CutterArc, OutlinePiece, StraightSide};
 use crate::milling::series::{Moving, PoseSeries};
 
 /// Newton's steps at the most.
@@ -140,6 +140,21 @@ impl Side {
         let share = (out * self.along[0] + up * self.along[1]) / square;
         (-1e-9..=1.0 + 1e-9).contains(&share)
     }
+}
+
+/// How the height at which a side is met on a line changes with each part of the pose, the place on the way being what it is.
+pub(crate) fn slopes_of_side(side: &StraightSide, pose: &[f64; 6], line: &NormalLine, height: f64) -> [f64; 6] {
+    let part = |row: &[f64; 6], from: usize| Vector3::new(row[from], row[from + 1], row[from + 2]);
+    let (normal, axis) = (part(line, 3), part(pose, 3));
+    let y = part(line, 0) + normal * height - part(pose, 0);
+    let z = y.dot(&axis);
+    let (sine, cosine) = side.half_angle.sin_cos();
+    let out = cosine / (y.norm_squared() - z * z).max(0.0).sqrt();
+    let by_tip = (y - axis * z) * -out + axis * sine;
+    let by_axis = y * (-out * z - sine);
+    let by_height = -by_tip.dot(&normal);
+    let slope = |k: usize| if k < 3 { by_tip[k] } else { by_axis[k - 3] };
+    [0, 1, 2, 3, 4, 5].map(|k| -slope(k) / by_height)
 }
 
 /// The lowest of one piece, if it has that point and the normal enters the body there.

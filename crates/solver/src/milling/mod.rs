@@ -5,6 +5,7 @@
 //! of the share of the way along it.
 
 pub(crate) mod axes;
+pub(crate) mod clear;
 pub(crate) mod cusp;
 pub(crate) mod distance;
 pub(crate) mod frame;
@@ -13,3 +14,4 @@ pub(crate) mod outline;
 pub(crate) mod pose;
 pub(crate) mod series;
 pub(crate) mod sweep;
+pub(crate) mod side;

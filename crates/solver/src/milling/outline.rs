@@ -11,6 +11,12 @@ use crate::equations::solution::Range;
 const SAME: f64 = 1e-9;
 /// How far the direction of a normal may lie beyond the ends of an arc, radians: rounding.
 const ON_END: f64 = 1e-9;
+/// A line that opens farther than this to its height is a face and no side: the tangent of some 80 degrees.
+const STEEP: f64 = 6.0;
+/// A side is thought to go on beyond each end by this many of its lengths ...
+const LENGTHENED: f64 = 4.0;
+/// ... or by this share of the way to the axis.
+const NEAR_AXIS: f64 = 0.8;
 /// Points of a piece that are looked at.
 const LOOKED_AT: usize = 9;
 
@@ -159,6 +165,68 @@ pub(crate) struct CutterArc {
     between: [f64; 2],
 }
 
+/// A straight side of a cutter, which may lie along a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StraightSide {
+    /// The angle between its lines and the axis, radians: positive where it opens towards the spindle.
+    pub half_angle: f64,
+    /// The height of its lower and its upper end above the tool's origin, mm.
+    pub heights: [f64; 2],
+    /// The distance of its lower end from the axis, mm.
+    pub radius: f64,
+}
+
+impl StraightSide {
+    /// Of a piece that is one: a line that faces away from the axis.
+    fn of_piece(piece: &OutlinePiece) -> Option<StraightSide> {
+        let OutlinePiece::Line { from, to } = *piece else { return None };
+        let [out, up] = [to[0] - from[0], to[1] - from[1]];
+        // the body lies on the left: a side runs upwards
+        (up > 0.0 && out.abs() < STEEP * up).then(|| StraightSide {
+            half_angle: out.atan2(up),
+            heights: [from[1], to[1]],
+            radius: from[0],
+        })
+    }
+
+    /// The distance from the axis at a height, mm.
+    pub fn radius_at(&self, height: f64) -> f64 {
+        self.radius + (height - self.heights[0]) * self.half_angle.tan()
+    }
+
+    /// How long its lines are, mm.
+    pub fn length(&self) -> f64 {
+        (self.heights[1] - self.heights[0]) / self.half_angle.cos()
+    }
+
+    /// As a piece of an outline.
+    pub fn piece(&self) -> OutlinePiece {
+        let end = |k: usize| [self.radius_at(self.heights[k]), self.heights[k]];
+        OutlinePiece::Line { from: end(0), to: end(1) }
+    }
+
+    /// The same lines beyond both ends, by some of their length, as far as they keep away from the axis.
+    pub(crate) fn lengthened(&self) -> StraightSide {
+        let (slope, by) = (self.half_angle.tan(), LENGTHENED * self.length());
+        let to_axis = |from: f64, radius: f64| if from * slope > 0.0 { NEAR_AXIS * radius / slope.abs() } else { by };
+        let [low, high] = self.heights;
+        let low = low - by.min(to_axis(1.0, self.radius));
+        let high = high + by.min(to_axis(-1.0, self.radius_at(high)));
+        StraightSide { heights: [low, high], radius: self.radius_at(low), ..*self }
+    }
+
+    /// The angle of its normal from the direction away from the spindle, radians.
+    fn angle(&self) -> f64 {
+        FRAC_PI_2 - self.half_angle
+    }
+
+    /// Its middle, as what touches there.
+    fn middle(&self) -> CutterArc {
+        let height = 0.5 * (self.heights[0] + self.heights[1]);
+        CutterArc { rho: self.radius_at(height), z: height, radius: 0.0, between: [self.angle(); 2] }
+    }
+}
+
 impl CutterArc {
     /// Of a piece that is one; of a line its ends.
     pub(crate) fn of_piece(piece: &OutlinePiece) -> Result<CutterArc, [[f64; 2]; 2]> {
@@ -178,32 +246,73 @@ impl CutterArc {
 
 impl Cutter {
     /// Its arcs and edges: what can touch a surface in a point.
-    pub(crate) fn arcs(&self) -> impl Iterator<Item = CutterArc> + '_ {
+    fn arcs(&self) -> impl Iterator<Item = CutterArc> + '_ {
         self.pieces.iter().filter_map(|piece| CutterArc::of_piece(piece).ok())
     }
 
-    /// The arc whose normal has an angle from the direction away from the spindle.
-    pub(crate) fn arc_at(&self, angle: f64) -> Option<CutterArc> {
-        self.arcs().find(|arc| arc.has(angle))
+    fn sides(&self) -> impl Iterator<Item = StraightSide> + '_ {
+        self.pieces.iter().filter_map(StraightSide::of_piece)
     }
 
-    /// Between which angles the normals of its arcs lie, radians from the direction away from the spindle; `None` without an arc.
+    /// Its longest straight side.
+    pub fn side(&self) -> Option<StraightSide> {
+        self.sides().max_by(|a, b| a.length().total_cmp(&b.length()))
+    }
+
+    /// What touches a surface whose normal has an angle from the direction away from the spindle: a side in its middle, else an arc.
+    pub(crate) fn touching(&self, angle: f64) -> Option<Touching> {
+        let side = self.sides().find(|side| (side.angle() - angle).abs() <= ON_END);
+        let of_side = side.map(|side| Touching { arc: side.middle(), bend_radius: f64::INFINITY });
+        of_side.or_else(|| {
+            let arc = self.arcs().find(|arc| arc.has(angle))?;
+            Some(Touching { arc, bend_radius: arc.radius })
+        })
+    }
+
+    /// Between which angles the normals of its arcs and sides lie, radians from the direction away from the spindle; `None` without any.
     pub fn angles(&self) -> Option<[f64; 2]> {
-        self.arcs().map(|arc| arc.between).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+        let sides = self.sides().map(|side| [side.angle(); 2]);
+        let all = self.arcs().map(|arc| arc.between).chain(sides);
+        all.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
     }
 
-    /// How far its arcs reach from the origin, at the most, mm.
+    /// How far its arcs and sides reach from the origin, at the most, mm.
     pub fn reach(&self) -> f64 {
-        self.arcs().map(|arc| arc.rho.abs() + arc.radius + arc.z.abs()).fold(0.0, f64::max)
+        let arcs = self.arcs().map(|arc| arc.rho.abs() + arc.radius + arc.z.abs());
+        let sides = self.sides().flat_map(|side| side.heights.map(|height| side.radius_at(height) + height.abs()));
+        arcs.chain(sides).fold(0.0, f64::max)
     }
 
-    /// The distance of a point from the nearest of its arcs, each taken for a whole torus, where the cutter stands so, mm; negative inside.
+    /// The distance of a point from the nearest of its arcs, each taken for a whole torus, and sides, where the cutter stands so, mm;
+    /// negative inside.
     pub fn gap(&self, pose: &[f64; 6], point: [f64; 3]) -> f64 {
-        let y = [0, 1, 2].map(|k| point[k] - pose[k]);
-        let z = y[0] * pose[3] + y[1] * pose[4] + y[2] * pose[5];
-        let rho = (y[0] * y[0] + y[1] * y[1] + y[2] * y[2] - z * z).max(0.0).sqrt();
-        self.arcs().map(|arc| (rho - arc.rho).hypot(z - arc.z) - arc.radius).fold(f64::INFINITY, f64::min)
+        let [rho, z] = meridian(pose, point);
+        let arcs = self.arcs().map(|arc| (rho - arc.rho).hypot(z - arc.z) - arc.radius);
+        let sides = self.sides().map(|side| {
+            let (sine, cosine) = side.half_angle.sin_cos();
+            let [out, up] = [rho - side.radius, z - side.heights[0]];
+            let beside = out * cosine - up * sine;
+            let along = out * sine + up * cosine;
+            let beyond = (along - side.length()).max(-along);
+            if beyond > 0.0 { beside.hypot(beyond) } else { beside }
+        });
+        arcs.chain(sides).fold(f64::INFINITY, f64::min)
     }
+}
+
+/// What of a cutter touches a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Touching {
+    pub(crate) arc: CutterArc,
+    /// The radius of the outline there: zero at an edge, infinite on a straight side.
+    pub(crate) bend_radius: f64,
+}
+
+/// A point as a cutter sees it: its distance from the axis and its height above the tool's origin, mm.
+pub(crate) fn meridian(pose: &[f64; 6], point: [f64; 3]) -> [f64; 2] {
+    let y = [0, 1, 2].map(|k| point[k] - pose[k]);
+    let z = y[0] * pose[3] + y[1] * pose[4] + y[2] * pose[5];
+    [(y[0] * y[0] + y[1] * y[1] + y[2] * y[2] - z * z).max(0.0).sqrt(), z]
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 
 use crate::milling::frame::SurfaceFrame;
-use crate::milling::outline::{Cutter, CutterArc};
+use crate::milling::outline::{Cutter, Touching};
 
 /// The bottom of a cutter touches as a plane where the angle between normal and axis is below this, radians.
 const FLAT: f64 = 1e-9;
@@ -25,9 +25,9 @@ pub enum NoPose {
     /// The bottom lies on the surface as a plane: nothing says which point of the edge touches.
     #[error("the bottom of the cutter lies flat on the surface")]
     Flat,
-    /// No arc of the cutter has the normal of the surface.
+    /// Neither an arc nor a straight side of the cutter has the normal of the surface.
     #[error(
-        "the cutter would touch with its outline at {angle} rad from its tip, which is no arc of the cutting surface"
+        "the cutter would touch with its outline at {angle} rad from its tip, which is no arc and no side of the cutting surface"
     )]
     OffCutter {
         /// The angle of the normal from the direction away from the spindle, radians.
@@ -74,7 +74,7 @@ impl CutterPose {
         // to the same side both ways
         let upright = normal * lean.tilt.cos() + along.cross(&normal) * lean.tilt.sin();
         let axis = (upright * lean.lead.cos() + feed * lean.lead.sin()).normalize();
-        let arc = touching_arc(cutter, &normal, &axis)?;
+        let arc = touching(cutter, &normal, &axis)?.arc;
         let towards = towards(&normal, &axis).unwrap_or_default();
         let point = Vector3::from(frame.position);
         let tip = point + normal * (arc.radius + lean.stock) - towards * arc.rho - axis * arc.z;
@@ -90,7 +90,7 @@ impl CutterPose {
     /// How the cutter parts from the surface about their contact; `None` where that is not known.
     pub fn bending(&self, frame: &SurfaceFrame, cutter: &Cutter) -> Option<Bending> {
         let (normal, axis) = (Vector3::from(frame.normal), Vector3::from(self.axis));
-        let arc = touching_arc(cutter, &normal, &axis).ok()?;
+        let Touching { arc, bend_radius } = touching(cutter, &normal, &axis).ok()?;
         let turning = towards(&normal, &axis).unwrap_or_else(|| Vector3::from(self.feed));
         let about = axis.cross(&turning).normalize();
         let over = about.cross(&normal);
@@ -100,8 +100,8 @@ impl CutterPose {
         let around = if arc.rho == 0.0 { 1.0 / arc.radius } else { sine / from_axis };
         let own = surface_form(frame, [over, about])?;
         let [a, b, c] = [own[0][0], own[0][1], own[1][1]];
-        let gap = if arc.radius > 0.0 {
-            let (a, c) = (a + 1.0 / arc.radius, c + around);
+        let gap = if bend_radius > 0.0 {
+            let (a, c) = (a + 1.0 / bend_radius, c + around);
             0.5 * (a + c) - (0.5 * (a - c)).hypot(b)
         } else {
             c + around
@@ -109,17 +109,18 @@ impl CutterPose {
         let feed = Vector3::from(self.feed);
         let [m, t] = [over.dot(&feed), about.dot(&feed)];
         // along the feed the cutter wraps itself; what is left across it
-        let swept = around / (m * m + around * arc.radius * t * t);
+        let beside = if t == 0.0 { 0.0 } else { around * bend_radius * t * t };
+        let swept = around / (m * m + beside);
         let hollow = 0.5 * (a + c) - (0.5 * (a - c)).hypot(b);
         Some(Bending { gap, effective_radius: 1.0 / swept, hollow })
     }
 }
 
-/// The arc with which a cutter touches.
-pub(crate) fn touching_arc(cutter: &Cutter, normal: &Vector3<f64>, axis: &Vector3<f64>) -> Result<CutterArc, NoPose> {
+/// What of a cutter touches.
+fn touching(cutter: &Cutter, normal: &Vector3<f64>, axis: &Vector3<f64>) -> Result<Touching, NoPose> {
     let angle = angle_between(normal, axis);
-    let arc = cutter.arc_at(angle).ok_or(NoPose::OffCutter { angle })?;
-    if arc.rho != 0.0 && angle < FLAT { Err(NoPose::Flat) } else { Ok(arc) }
+    let found = cutter.touching(angle).ok_or(NoPose::OffCutter { angle })?;
+    if found.arc.rho != 0.0 && angle < FLAT { Err(NoPose::Flat) } else { Ok(found) }
 }
 
 fn angle_between(a: &Vector3<f64>, b: &Vector3<f64>) -> f64 {
@@ -132,7 +133,7 @@ fn towards(normal: &Vector3<f64>, axis: &Vector3<f64>) -> Option<Vector3<f64>> {
 }
 
 /// The normal curvatures of a surface in two orthonormal tangents, positive where its body is convex.
-fn surface_form(frame: &SurfaceFrame, tangents: [Vector3<f64>; 2]) -> Option<[[f64; 2]; 2]> {
+pub(crate) fn surface_form(frame: &SurfaceFrame, tangents: [Vector3<f64>; 2]) -> Option<[[f64; 2]; 2]> {
     let steps = frame.steps.map(Vector3::from);
     let turns = frame.turns.map(Vector3::from);
     let s = [0, 1].map(|i| [0, 1].map(|j| tangents[i].dot(&steps[j])));

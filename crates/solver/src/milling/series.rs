@@ -75,11 +75,29 @@ impl PoseSeries {
         out
     }
 
+    /// How fast position (mm) and direction change with the share at the most.
+    pub(crate) fn rates(&self) -> [f64; 2] {
+        let each =
+            self.coefficients.iter().enumerate().map(|(degree, c)| lengths(c).map(|length| fastest(degree) * length));
+        each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
+    }
+
     /// The largest of the last two coefficients: how far the series may be off.
-    fn tail(&self) -> f64 {
+    pub fn tail(&self) -> f64 {
         let last = self.coefficients.iter().rev().take(2).flatten();
         last.fold(0.0, |most: f64, c| most.max(c.abs()))
     }
+}
+
+/// The length of the position's part of a coefficient, and that of the direction's.
+fn lengths(coefficient: &[f64; 6]) -> [f64; 2] {
+    let length = |part: &[f64]| part.iter().map(|x| x * x).sum::<f64>().sqrt();
+    [length(&coefficient[..3]), length(&coefficient[3..])]
+}
+
+/// How fast a polynomial of Chebyshev's changes with the share at the most.
+fn fastest(degree: usize) -> f64 {
+    2.0 * (degree * degree) as f64
 }
 
 /// Positions and directions over two shares: of passes, and along them. The polynomial through values at [`Chart::shares`].
@@ -128,6 +146,22 @@ impl PoseField {
         let weights = Chart::weights(columns, share);
         let at = |row: usize| self.weighted(&weights, |column| row * columns + column);
         PoseSeries::through(&(0..rows).map(at).collect::<Vec<[f64; 6]>>())
+    }
+
+    /// How fast the position changes with each share at the most, mm.
+    pub(crate) fn rates(&self) -> [f64; 2] {
+        let [rows, columns] = self.counts;
+        let along: Vec<PoseSeries> = self.values.chunks(columns).map(PoseSeries::through).collect();
+        let mut rates = [0.0; 2];
+        for column in 0..columns {
+            let line: Vec<[f64; 6]> = along.iter().map(|series| series.coefficients[column]).collect();
+            for (row, coefficient) in PoseSeries::through(&line).coefficients.iter().enumerate().take(rows) {
+                let [length, _] = lengths(coefficient);
+                rates[0] += fastest(row) * length;
+                rates[1] += fastest(column) * length;
+            }
+        }
+        rates
     }
 
     /// How far the polynomial may be off between its values: mm, and for directions radians.

@@ -191,7 +191,9 @@ impl<'a> Names<'a> {
         self.path(&mill.frame, place, Wanted::Other, NameKind::Frame);
         place.surfaces.extend(surface);
         place.is_at_points = true;
-        for MillRun { key, definition, range, word: _, value } in mill.passes.iter().chain(&mill.along) {
+        for MillRun { key, definition, range, word: _, value } in
+            mill.passes.iter().chain(&mill.sides).chain(&mill.along)
+        {
             self.coordinate(job, key, definition.as_ref(), place);
             self.range(range, place);
             self.expression(value, place);

@@ -238,7 +238,7 @@ impl JobStatement {
 
 impl Mill {
     fn expressions(&self) -> Vec<&Expression> {
-        let runs = self.passes.iter().chain(&self.along);
+        let runs = self.passes.iter().chain(&self.sides).chain(&self.along);
         let runs = runs.flat_map(|run| run.definition.iter().chain(run.range.ends()).chain([&run.value]));
         let attitudes = self.attitudes.iter().map(|(_, value)| value);
         runs.chain(attitudes).chain(self.clearances.iter().map(|clear| &clear.distance)).collect()
@@ -425,6 +425,8 @@ pub struct Mill {
     pub frame: Path,
     /// `passes profilewise: 0 .. 1, scallop 2 um`
     pub passes: Vec<MillRun>,
+    /// `side profilewise: 0 .. 1 by 8`
+    pub sides: Vec<MillRun>,
     /// `along lengthwise: 0 .. 1, chord 0.5 um`
     pub along: Vec<MillRun>,
     /// `lead`, `tilt`, `stock`, each with its value.

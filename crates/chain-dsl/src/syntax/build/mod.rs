@@ -183,6 +183,7 @@ fn is_mark(rule: Rule) -> bool {
             | kw_mill
             | kw_of
             | kw_passes
+            | kw_side
             | kw_both
             | kw_ways
             | kw_clear

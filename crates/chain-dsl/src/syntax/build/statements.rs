@@ -202,16 +202,19 @@ impl Build<'_> {
             cutter: self.path(parts.required(Rule::path)),
             frame: self.path(parts.required(Rule::path)),
             passes: Vec::new(),
+            sides: Vec::new(),
             along: Vec::new(),
             attitudes: Vec::new(),
             both_ways: Vec::new(),
             clearances: Vec::new(),
             broken: false,
         };
-        let said = [Rule::passes, Rule::along_passes, Rule::attitude, Rule::both_ways, Rule::clearance];
+        let said =
+            [Rule::passes, Rule::side_pass, Rule::along_passes, Rule::attitude, Rule::both_ways, Rule::clearance];
         while let Some(pair) = said.into_iter().find_map(|rule| parts.optional(rule)) {
             match pair.as_rule() {
                 Rule::passes => mill.passes.push(self.mill_run(pair)),
+                Rule::side_pass => mill.sides.push(self.mill_run(pair)),
                 Rule::along_passes => mill.along.push(self.mill_run(pair)),
                 Rule::attitude => {
                     let mut parts = Parts::of(pair);

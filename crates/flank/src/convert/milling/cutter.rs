@@ -37,7 +37,7 @@ impl MillingCutter {
     }
 }
 
-fn put<'g>(vector: Vector3<'g>, bindings: &[(Expr<'g>, Expr<'g>)]) -> Vector3<'g> {
+pub(super) fn put<'g>(vector: Vector3<'g>, bindings: &[(Expr<'g>, Expr<'g>)]) -> Vector3<'g> {
     let found = vector.0[0].graph().substitute(&vector.0, bindings);
     Vector3([found[0], found[1], found[2]])
 }

@@ -1,9 +1,9 @@
 //! What pictures show of a milling.
 
-use flank_chain_dsl::{Job, Milling};
+use flank_chain_dsl::{Job, Milling, MillingObstacle};
 use flank_draw::{MillingDrawing, PassChart, RidgeSection};
 use flank_export::{Axis, Field, Header, Outcome, Patch, Point, Values, fixed};
-use flank_solver::{Obstacle, PoseSeries, ToolBody, lowest};
+use flank_solver::{Obstacle, ToolBody, lowest};
 use rayon::prelude::*;
 
 use super::cutter::outline;
@@ -20,6 +20,8 @@ use crate::project::units;
 
 /// Columns of the map of ridges, and places of each pass.
 const COLUMNS: usize = 41;
+/// Rows of what one pass leaves.
+const ROWS_OF_ONE: usize = 15;
 /// Places of a section across the passes, and how many steps it reaches to both sides of the ridge.
 const PLACES: usize = 321;
 const STEPS: f64 = 2.0;
@@ -36,18 +38,22 @@ pub(crate) fn shown(
 ) -> Result<(MillResult, Option<MillingDrawing>), Failure> {
     let Worked { target, result, found } = worked(job, milling, request, session)?;
     let Some(found) = &found else { return Ok((result, None)) };
-    let gap = Gap::of_highest(found);
+    let Some(highest) = found.milled.plan.cusp.or_else(|| found.map.highest()) else { return Ok((result, None)) };
+    let gap = Gap::of_highest(found, highest);
     let mut charts: Vec<PassChart> = clearances(job, &target, (found, gap.pass), session)?.into_iter().collect();
     charts.extend(rotary_axes(&target, found, gap.pass));
     let MillResult { job: name, milling, surface, cutter, .. } = &result;
-    let highest = found.milled.plan.cusp;
     let height = 1e3 * highest.height;
     let drawing = MillingDrawing {
         header,
         title: format!("{name}: {milling} of {surface} with {cutter}"),
         note: format!(
-            "Heights of the ridges between neighbouring passes, along the normal of the flank beside the stock. The section is straightened \
+            "{}, along the normal of the flank beside the stock. The section is straightened \
              along the flank; what lies below the cutter on all passes is left. {}",
+            match result.side {
+                None => "Heights of the ridges between neighbouring passes",
+                Some(_) => "Heights that one pass with the side of the cutter leaves",
+            },
             text(&result)
         ),
         ridges: ridges(&target, found),
@@ -63,6 +69,9 @@ pub(crate) fn shown(
 /// Passes and blocks in a sentence.
 fn text(result: &MillResult) -> String {
     let step = result.pass_step.unwrap_or_default();
+    if result.side.is_some() {
+        return format!("One pass of {} positions.", result.positions.unwrap_or_default());
+    }
     let (passes, positions) = (result.passes.unwrap_or_default(), result.positions.unwrap_or_default());
     format!("{passes} passes, at most {} mm apart, of {positions} positions each.", fixed(step, 4))
 }
@@ -81,9 +90,11 @@ fn ridges(target: &Target<'_, '_>, found: &Found<'_, '_>) -> Patch {
     let Found { cutter, fields, milled, .. } = found;
     let columns = evenly(COLUMNS);
     let planner = Planner { target, fields, cutter, axes: None };
+    if milled.plan.cusp.is_none() {
+        return left_by_one(target, found);
+    }
     // a plan has ridges between all passes
     let cusps = planner.cusps(&milled.plan.shares[0], &columns, None).unwrap_or_default();
-    let stock = target.milling.stock;
     let border = |row: &[super::LeftAt], share: f64| -> Vec<super::LeftAt> {
         row.iter().map(|at| super::LeftAt { shares: [share, at.shares[1]], ..*at }).collect()
     };
@@ -91,6 +102,24 @@ fn ridges(target: &Target<'_, '_>, found: &Found<'_, '_>) -> Patch {
     let first = rows.first().map_or(Vec::new(), |row| border(row, 0.0));
     let last = rows.last().map_or(Vec::new(), |row| border(row, 1.0));
     let all: Vec<super::LeftAt> = first.into_iter().chain(cusps.iter().copied()).chain(last).collect();
+    patch(target, found, &all, "height of the ridge between two passes, along the normal")
+}
+
+/// What one pass leaves, as a grid.
+fn left_by_one(target: &Target<'_, '_>, found: &Found<'_, '_>) -> Patch {
+    let columns = evenly(COLUMNS);
+    let places = evenly(ROWS_OF_ONE).into_iter().flat_map(|across| columns.iter().map(move |along| [across, *along]));
+    let at = |shares: [f64; 2]| super::LeftAt {
+        shares,
+        height: found.swept.left(&found.fields.surface.at(shares)).map_or(f64::NAN, |left| left.height),
+    };
+    let all: Vec<super::LeftAt> = places.map(at).collect();
+    patch(target, found, &all, "height that the pass leaves, along the normal")
+}
+
+/// Heights at places of columns, row by row; not a number where none is known.
+fn patch(target: &Target<'_, '_>, found: &Found<'_, '_>, all: &[super::LeftAt], meaning: &str) -> Patch {
+    let (fields, stock) = (&found.fields, target.milling.stock);
     let point = |at: &super::LeftAt| {
         let [x, y, z, nx, ny, nz] = fields.surface.at(at.shares);
         Point {
@@ -113,8 +142,10 @@ fn ridges(target: &Target<'_, '_>, found: &Found<'_, '_>) -> Patch {
         fields: vec![Field {
             name: "ridge".to_string(),
             unit: "um".to_string(),
-            meaning: "height of the ridge between two passes, along the normal".to_string(),
-            values: Values::Scalars(all.iter().map(|at| Some(1e3 * (at.height - stock))).collect()),
+            meaning: meaning.to_string(),
+            values: Values::Scalars(
+                all.iter().map(|at| at.height.is_finite().then_some(1e3 * (at.height - stock))).collect(),
+            ),
         }],
     }
 }
@@ -123,23 +154,23 @@ fn ridges(target: &Target<'_, '_>, found: &Found<'_, '_>) -> Patch {
 struct Gap {
     /// The pass before it.
     pass: usize,
-    /// The shares of the ridge.
-    ridge: [f64; 2],
+    /// The ridge, or the highest place of a pass alone.
+    highest: super::LeftAt,
 }
 
 impl Gap {
-    fn of_highest(found: &Found<'_, '_>) -> Gap {
-        let plan = &found.milled.plan;
-        let ridge = plan.cusp.shares;
-        let after = plan.shares[0].partition_point(|share| *share <= ridge[0]);
-        Gap { pass: after.saturating_sub(1).min(plan.shares[0].len() - 2), ridge }
+    fn of_highest(found: &Found<'_, '_>, highest: super::LeftAt) -> Gap {
+        let passes = &found.milled.plan.shares[0];
+        let after = passes.partition_point(|share| *share <= highest.shares[0]);
+        Gap { pass: after.saturating_sub(1).min(passes.len().saturating_sub(2)), highest }
     }
 
     /// What the passes about it leave across the feed.
     fn section(&self, target: &Target<'_, '_>, found: &Found<'_, '_>) -> RidgeSection {
         let Found { cutter, fields, milled, swept, .. } = found;
-        let (passes, [across, along]) = (&milled.plan.shares[0], self.ridge);
-        let step = passes[self.pass + 1] - passes[self.pass];
+        let (passes, [across, along]) = (&milled.plan.shares[0], self.highest.shares);
+        // a pass alone covers all
+        let step = passes.get(self.pass + 1).map_or(1.0, |next| next - passes[self.pass]);
         let [low, high] = [-STEPS, STEPS].map(|steps| (across + steps * step).clamp(0.0, 1.0));
         let line = fields.surface.across(along);
         let shares: Vec<f64> = evenly(PLACES).into_iter().map(|share| low + share * (high - low)).collect();
@@ -156,19 +187,22 @@ impl Gap {
         let zero = at_ridge(across);
         let stock = target.milling.stock;
         let point = |k: usize, height: f64| [ways[k] - zero, 1e3 * (height - stock)];
-        let near = (0..passes.len()).filter(|k| (passes[*k] - across).abs() <= (STEPS + 2.0) * step);
+        let near = (0..passes.len()).filter(|k| passes.len() > 1 && (passes[*k] - across).abs() <= (STEPS + 2.0) * step);
         let cutter_on = |number: usize| {
-            let pass: PoseSeries = fields.of_pass(number).pass(passes[number]);
+            let pass = &milled.ways[number];
             let height =
-                |k: usize| lowest(&pass, &cutter.cutting, &lines[k], along).map(|found| point(k, found.height));
+                |k: usize| lowest(pass, &cutter.cutting, &lines[k], along).map(|found| point(k, found.height));
             (0..PLACES).filter_map(height).collect()
         };
         let left = (0..PLACES).into_par_iter().filter_map(|k| swept.left(&lines[k]).map(|left| point(k, left.height)));
         RidgeSection {
-            about: format!("{}; passes {} and {}", target.place(self.ridge), self.pass + 1, self.pass + 2),
+            about: match passes.len() {
+                1 => target.place(self.highest.shares),
+                _ => format!("{}; passes {} and {}", target.place(self.highest.shares), self.pass + 1, self.pass + 2),
+            },
             passes: near.map(cutter_on).collect(),
             left: left.collect(),
-            ridge: [0.0, 1e3 * milled.plan.cusp.height],
+            ridge: [0.0, 1e3 * self.highest.height],
         }
     }
 }
@@ -198,9 +232,10 @@ fn clearances(
     let along = along(target, found, pass);
     let (mut curves, mut limits) = (Vec::new(), Vec::new());
     for clearance in &target.milling.clearances {
+        let MillingObstacle::Surface(surface) = clearance.obstacle else { continue };
         let body = ToolBody { pieces: outline(job, &clearance.body)?.pieces };
-        let area = sampled(job, target.milling, clearance)?;
-        let patch = Milled::new(job, &job.surfaces[clearance.surface], area, session);
+        let area = sampled(job, target.milling, surface)?;
+        let patch = Milled::new(job, &job.surfaces[surface], area, session);
         let Ok(field) = patch.field() else { continue };
         let obstacle = Obstacle::new(field);
         let distance = |pose: &[f64; 6]| obstacle.nearest(&body, pose, f64::INFINITY).map(|nearest| nearest.distance);

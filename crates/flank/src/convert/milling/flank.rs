@@ -51,9 +51,9 @@ impl MilledFlank {
         (jobs, session): (&JobSelection, Session<'_>),
     ) -> Result<Result<MilledFlank, Vec<NotDone>>, Failure> {
         let Worked { target, result, found } = worked(job, milling, &MillRequest::new(jobs.clone()), session)?;
-        let Some(Found { cutter, fields, milled, swept, .. }) = found else { return Ok(Err(result.not_done)) };
-        let (shares, highest) = (milled.plan.shares[0].clone(), milled.plan.cusp.height);
-        let passes = shares.iter().enumerate().map(|(number, share)| fields.of_pass(number).pass(*share)).collect();
+        let Some(Found { cutter, fields, milled, swept, map }) = found else { return Ok(Err(result.not_done)) };
+        let most = milled.plan.cusp.or_else(|| map.highest());
+        let (shares, passes, highest) = (milled.plan.shares[0].clone(), milled.ways, most.map_or(0.0, |at| at.height));
         let (labels, stock, not_done) = (target.labels(), milling.stock, result.not_done);
         Ok(Ok(MilledFlank { cutter, fields, swept, shares, passes, highest, stock, labels, not_done }))
     }

@@ -2,12 +2,11 @@
 
 use flank_chain_dsl::Job;
 use flank_export::{Axis, Dataset, Field, Header, Patch, Values};
-use flank_solver::{LeftOver, PoseSeries, SweptCutter};
+use flank_solver::{LeftOver, SweptCutter};
 use rayon::prelude::*;
 
-use super::cutter::MillingCutter;
 use super::left_at;
-use super::plan::{LeftAt, Plan};
+use super::plan::LeftAt;
 use super::result::HeightMap;
 use super::target::{Fields, Target};
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -18,13 +17,6 @@ pub(super) struct LeftMap {
     pub(super) counts: [usize; 2],
     /// Row by row, less the stock; none where the cutter does not pass.
     left: Vec<Option<LeftOver>>,
-}
-
-/// The cutter on all passes of a plan, each as smooth as it is meant.
-pub(super) fn of_plan(plan: &Plan, fields: &Fields, cutter: &MillingCutter) -> SweptCutter {
-    let shares = plan.shares[0].par_iter().enumerate();
-    let passes: Vec<PoseSeries> = shares.map(|(number, share)| fields.of_pass(number).pass(*share)).collect();
-    SweptCutter::of_passes(&passes, &cutter.cutting)
 }
 
 /// The shares of the middles of equal cells.
@@ -57,12 +49,17 @@ impl LeftMap {
         })
     }
 
+    /// Where most is left.
+    pub(super) fn highest(&self) -> Option<LeftAt> {
+        self.places().reduce(|a, b| if b.height > a.height { b } else { a })
+    }
+
     pub(super) fn untouched(&self) -> usize {
         self.left.iter().filter(|left| left.is_none()).count()
     }
 
     pub(super) fn result(&self, target: &Target<'_, '_>) -> HeightMap {
-        let most = self.places().reduce(|a, b| if b.height > a.height { b } else { a });
+        let most = self.highest();
         let least = self.places().reduce(|a, b| if b.height < a.height { b } else { a });
         HeightMap {
             rows: self.counts[0],

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Axis, Job, LawSource, Machine as JobMachine, Milling};
 use flank_expr::Expr;
-use flank_solver::{CutterPose, MillAxes, NotExplicit, PoseSeries};
+use flank_solver::{MillAxes, NotExplicit, PoseSeries};
 
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
@@ -41,13 +41,23 @@ pub(super) enum NoMachine {
 
 impl<'p, 'g> Machine<'p, 'g> {
     pub(super) fn of_milling(job: &'p Job<'g>, milling: &Milling<'g>) -> Result<Machine<'p, 'g>, NoMachine> {
+        Machine::with_bindings(job, milling, &[&job.bindings()])
+    }
+
+    /// The same with the values of parameters, put in one after the other.
+    pub(super) fn with_bindings(
+        job: &'p Job<'g>,
+        milling: &Milling<'g>,
+        bindings: &[&[(Expr<'g>, Expr<'g>)]],
+    ) -> Result<Machine<'p, 'g>, NoMachine> {
         let machine = &job.machines[milling.machine];
         let free: Vec<&Axis<'g>> = machine.axes.iter().filter(|axis| axis.source == LawSource::Free).collect();
         let Some(first) = free.first() else { return Err(NoMachine::NoFreeAxis) };
         let graph = first.variable.graph();
         let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
         let laws: Vec<(Expr<'g>, Expr<'g>)> = followers.map(|axis| (axis.variable, axis.law)).collect();
-        let chain = milling.t_work_tool.substituted(&laws).substituted(&job.bindings());
+        let chain = milling.t_work_tool.substituted(&laws);
+        let chain = bindings.iter().fold(chain, |chain, bindings| chain.substituted(bindings));
         let variables: Vec<Expr<'g>> = free.iter().map(|axis| axis.variable).collect();
         let closed = MillAxes::new(graph, &chain, &variables).map_err(NoMachine::NotExplicit)?;
         let axes = FreeAxes {
@@ -57,6 +67,11 @@ impl<'p, 'g> Machine<'p, 'g> {
             travels: free.iter().map(|axis| axis.travel).collect(),
         };
         Ok(Machine { machine, free, axes })
+    }
+
+    /// The same on the elbow on which these poses stay within the travels, and turn less.
+    pub(super) fn on_best_elbow(self, passes: &[Vec<[f64; 6]>]) -> Machine<'p, 'g> {
+        Machine { axes: self.axes.on_best_elbow(passes), ..self }
     }
 
     /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.
@@ -124,7 +139,7 @@ impl<'p, 'g> Machine<'p, 'g> {
 
 impl FreeAxes {
     /// The same on the elbow on which these poses stay within the travels, and turn less.
-    pub(super) fn on_best_elbow(self, passes: &[Vec<[f64; 6]>]) -> FreeAxes {
+    fn on_best_elbow(self, passes: &[Vec<[f64; 6]>]) -> FreeAxes {
         let cost = |elbow: usize| {
             let beyond = |row: &Vec<f64>| {
                 let each = row.iter().zip(&self.travels).map(|(at, travel)| match *travel {
@@ -159,8 +174,7 @@ impl FreeAxes {
     }
 
     fn on_elbow(&self, poses: &[[f64; 6]], elbow: usize) -> Vec<Vec<f64>> {
-        let pose = |[x, y, z, i, j, k]: &[f64; 6]| CutterPose { tip: [*x, *y, *z], axis: [*i, *j, *k], feed: [0.0; 3] };
-        let mut rows: Vec<Vec<f64>> = poses.iter().map(|row| self.closed.at(&pose(row), elbow)).collect();
+        let mut rows = self.closed.at_each(poses, elbow);
         for axis in self.rotary() {
             for k in 1..rows.len() {
                 let before = rows[k - 1][axis];

@@ -1,5 +1,6 @@
 //! `flank mill`
 
+pub(crate) mod clamp;
 mod cutter;
 pub(crate) mod drawn;
 mod files;
@@ -11,16 +12,19 @@ mod obstacles;
 mod patch;
 mod plan;
 mod program;
+mod proof;
 pub(crate) mod result;
+pub(crate) mod side;
 mod target;
 mod text;
 mod verify;
 
 use std::time::Instant;
 
-use flank_chain_dsl::{Job, Milling};
+use flank_chain_dsl::{Job, Milling, PassSpacing};
 use flank_expr::Graph;
-use flank_solver::{Bending, SweptCutter};
+use flank_solver::{Bending, PoseSeries, SweptCutter};
+use rayon::prelude::*;
 
 use self::cutter::MillingCutter;
 use self::left::LeftMap;
@@ -79,6 +83,8 @@ struct Milled<'p, 'g> {
     plan: Plan,
     /// The exact points of all positions.
     lattice: Lattice,
+    /// The cutter on each pass, as smooth as it is meant.
+    ways: Vec<PoseSeries>,
     /// Of each pass its poses, in the order in which they are passed.
     poses: Vec<Vec<[f64; 6]>>,
     /// Of each pass the positions of the axes; none without a machine.
@@ -132,16 +138,21 @@ pub(crate) fn worked<'j, 'g>(
     let mut result = nothing(job, &target, request);
     let (machine, remark) = machine_of(job, milling);
     result.remarks.extend(remark);
-    if machine.is_none() && (!request.nc.is_empty() || request.verify.is_some()) {
+    if machine.is_none() && (!request.nc.is_empty() || request.verify.is_some() || !request.clamp.is_empty()) {
         let message =
             format!("{} has no axes in closed form, and programs are made of them", job.machines[milling.machine].name);
         result.not_done.push(NotDone::new(NotDoneKind::NoClosedForm, &milling.name, message));
     }
-    let planned = target
-        .fields(&cutter)
-        .and_then(|fields| milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)));
-    let (fields, milled) = match planned {
-        Ok(planned) => planned,
+    let found = target.fields(&cutter).and_then(|fields| match milling.spacing {
+        PassSpacing::Side(free) => {
+            let (milled, left) = side::milled(&target, &cutter, machine, &fields, (request, free))?;
+            result.side = Some(left);
+            Ok((fields, milled))
+        }
+        _ => milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)),
+    });
+    let (fields, milled) = match found {
+        Ok(found) => found,
         Err(missing) => {
             result.not_done.push(missing);
             return Ok(Worked { target, result, found: None });
@@ -149,10 +160,16 @@ pub(crate) fn worked<'j, 'g>(
     };
     session.check()?;
     describe(&mut result, &target, &cutter, &fields, &milled);
-    let (kept, missed) = obstacles::kept(job, &target, &milled, session)?;
+    if !request.clamp.is_empty() && milled.machine.is_some() {
+        let (clamping, missed) = clamp::found(job, milling, &milled.poses, request)?;
+        result.clamping = clamping;
+        result.not_done.extend(missed);
+        session.check()?;
+    }
+    let (kept, missed) = obstacles::kept(job, &target, &milled, (request, session))?;
     result.clearances = kept;
     result.not_done.extend(missed);
-    let swept = left::of_plan(&milled.plan, &fields, &cutter);
+    let swept = SweptCutter::of_passes(&milled.ways, &cutter.cutting);
     let map = LeftMap::of_cutter(&target, &fields, &swept, [request.rows as usize, request.columns as usize]);
     session.check()?;
     result.map = Some(map.result(&target));
@@ -214,7 +231,7 @@ fn milled<'p, 'g>(
             (0..=8).map(|k| pass.at(f64::from(k) / 8.0)).collect()
         })
         .collect();
-    let machine = machine.map(|machine| Machine { axes: machine.axes.on_best_elbow(&few), ..machine });
+    let machine = machine.map(|machine| machine.on_best_elbow(&few));
     let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
     let plan = Planner { target, fields, cutter, axes }.plan()?;
     let lattice = target.lattice(plan.shares.clone())?;
@@ -231,7 +248,8 @@ fn milled<'p, 'g>(
     };
     let poses = (0..plan.shares[0].len()).map(of_pass).collect::<Result<Vec<_>, NotDone>>()?;
     let axes = machine.iter().flat_map(|machine| poses.iter().map(|pass| machine.axes.along(pass))).collect();
-    Ok(Milled { plan, lattice, poses, axes, machine })
+    let ways = plan.shares[0].par_iter().enumerate().map(|(number, share)| fields.of_pass(number).pass(*share)).collect();
+    Ok(Milled { plan, lattice, ways, poses, axes, machine })
 }
 
 fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> MillResult {
@@ -249,6 +267,7 @@ fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> Mil
         path_length: None,
         cusp: None,
         map: None,
+        side: None,
         blocks: None,
         tool_centre_control: request.tool_centre_control,
         effective_radius: None,
@@ -258,6 +277,7 @@ fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> Mil
         axes: Vec::new(),
         least_from_pole: None,
         polynomials_off: None,
+        clamping: None,
         verified: None,
         files: Vec::new(),
         not_done: Vec::new(),
@@ -287,10 +307,10 @@ fn describe(
     let way = |pass: &Vec<[f64; 6]>| pass.windows(2).map(|pair| distance(&pair[0], &pair[1])).sum::<f64>();
     result.passes = Some(plan.shares[0].len());
     result.positions = Some(plan.shares[1].len());
-    result.pass_step = Some(plan.step);
+    result.pass_step = plan.step;
     result.block_length = Some(plan.block);
     result.path_length = Some(milled.poses.iter().map(way).sum());
-    result.cusp = Some(left_at(target, plan.cusp));
+    result.cusp = plan.cusp.map(|cusp| left_at(target, cusp));
     result.blocks = Some(plan.blocks.map(|ends| left_at(target, ends)));
     result.polynomials_off = Some(fields.off);
     result.timing.points = milled.lattice.frames.len();
@@ -298,11 +318,14 @@ fn describe(
         let message = target.beyond(unknown, by);
         result.remarks.push(Remark::new(RemarkKind::Continued, target.name(), message));
     }
-    bending(result, target, cutter, milled);
+    match &result.side {
+        Some(side) => result.not_done.extend(side.missed(target)),
+        None => bending(result, target, cutter, milled),
+    }
     let Some(machine) = &milled.machine else { return };
     let poles = milled.poses.iter().flatten().map(|row| machine.axes.angle_from_pole(row).to_degrees());
     result.least_from_pole = poles.reduce(f64::min);
-    result.axes = axes(machine, milled);
+    result.axes = axes(machine, &milled.poses, &milled.axes);
     for (pass, (poses, rows)) in milled.poses.iter().zip(&milled.axes).enumerate() {
         let place = |k: usize| target.place(milled.shares(target, pass, k));
         for fault in machine.faults(poses, rows, place) {
@@ -358,13 +381,13 @@ fn distance(a: &[f64; 6], b: &[f64; 6]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-fn axes(machine: &Machine<'_, '_>, milled: &Milled<'_, '_>) -> Vec<MilledAxis> {
+fn axes(machine: &Machine<'_, '_>, poses: &[Vec<[f64; 6]>], rows: &[Vec<Vec<f64>>]) -> Vec<MilledAxis> {
     let of_axis = |axis: usize| {
         let own = machine.free[axis];
         let shown = |value: f64| units::shown(own.dimension, value);
-        let values = milled.axes.iter().flatten().map(|row| row[axis]);
+        let values = rows.iter().flatten().map(|row| row[axis]);
         let extent = [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)];
-        let rate = milled.axes.iter().zip(&milled.poses).flat_map(|(rows, poses)| {
+        let rate = rows.iter().zip(poses).flat_map(|(rows, poses)| {
             rows.windows(2).zip(poses.windows(2)).map(move |(rows, poses)| {
                 let way = distance(&poses[0], &poses[1]);
                 if way > 0.0 { (rows[1][axis] - rows[0][axis]).abs() / way } else { 0.0 }

@@ -1,19 +1,33 @@
 //! How near the cutter comes to what it keeps clear of.
 
-use flank_chain_dsl::{Job, MilledArea, Milling, MillingClearance, SampleGrid};
-use flank_solver::{Obstacle, ToolBody};
+use flank_chain_dsl::{
+    CutterPiece, Job, MilledArea, Milling, MillingClearance, MillingObstacle, SampleGrid, ToolShape,
+};
+use flank_expr::geometry::Chain;
+use flank_expr::{ScalarEvaluator, Tape};
+use flank_solver::{Chart, Obstacle, PoseField, ToolBody};
 use rayon::prelude::*;
 
 use super::Milled;
-use super::cutter::outline;
-use super::patch::Patch;
+use super::cutter::{outline, put};
+use super::patch::{GRIDS, NEAR, Patch, rough};
+use super::proof::proven;
 use super::result::ClearanceKept;
 use super::target::Target;
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::MillRequest;
 use crate::project::session::Session;
+use crate::project::units;
 
-/// The least distance of each pair over all positions, with what is missed.
+/// What the cutter keeps clear of: a surface as polynomials, with words for its places.
+pub(super) struct Kept<'k> {
+    pub(super) name: String,
+    pub(super) obstacle: Obstacle,
+    pub(super) place: Box<dyn Fn([f64; 2]) -> String + 'k>,
+}
+
+/// The least distance of each pair over all positions, with what is missed or not proven.
 ///
 /// # Errors
 /// If a surface is not sampled or a body is no outline.
@@ -21,33 +35,98 @@ pub(super) fn kept(
     job: &Job<'_>,
     target: &Target<'_, '_>,
     milled: &Milled<'_, '_>,
-    session: Session<'_>,
+    (request, session): (&MillRequest, Session<'_>),
 ) -> Result<(Vec<ClearanceKept>, Vec<NotDone>), Failure> {
     let (mut kept, mut missed) = (Vec::new(), Vec::new());
     for clearance in &target.milling.clearances {
         let body = ToolBody { pieces: outline(job, &clearance.body)?.pieces };
-        let area = sampled(job, target.milling, clearance)?;
-        let patch = Patch::new(job, &job.surfaces[clearance.surface], area, session);
-        match patch.field() {
-            Err(missing) => missed.push(missing),
-            Ok(field) => {
-                let (found, not_clear) = least(target, milled, clearance, (&patch, &Obstacle::new(field), &body));
-                kept.push(found);
-                missed.extend(not_clear);
+        let found = match &clearance.obstacle {
+            MillingObstacle::Surface(surface) => {
+                let area = sampled(job, target.milling, *surface)?;
+                vec![of_surface(Patch::new(job, &job.surfaces[*surface], area, session))]
             }
+            MillingObstacle::Fixture { pieces, t_work_fixture } => {
+                let t_work_fixture = t_work_fixture.substituted(&job.bindings());
+                pieces.iter().map(|piece| of_fixture(job, piece, &t_work_fixture)).collect()
+            }
+        };
+        for found in found {
+            match found {
+                Err(missing) => missed.push(missing),
+                Ok(of) => {
+                    let (mut found, not_clear) = least(target, milled, clearance, (&of, &body));
+                    missed.extend(not_clear);
+                    if let Some(tolerance) = request.certify {
+                        let proof = (&of, (clearance.body_name.as_str(), &body), clearance.distance - tolerance);
+                        let (proven, open) = proven(target, milled, request.tool_centre_control, proof);
+                        found.proven = Some(proven);
+                        missed.extend(open);
+                    }
+                    kept.push(found);
+                }
+            }
+            session.check()?;
         }
-        session.check()?;
     }
     Ok((kept, missed))
 }
 
-/// The part of a surface that its sample asks for.
-pub(super) fn sampled<'g>(
+fn of_surface<'k, 'g: 'k>(patch: Patch<'k, 'g>) -> Result<Kept<'k>, NotDone> {
+    let obstacle = Obstacle::new(patch.field()?);
+    Ok(Kept { name: patch.name().to_string(), obstacle, place: Box::new(move |shares| patch.place(shares)) })
+}
+
+/// A piece of a tool that stands still against the work.
+fn of_fixture<'k, 'g>(
     job: &Job<'g>,
-    milling: &Milling<'g>,
-    clearance: &MillingClearance<'g>,
-) -> Result<MilledArea<'g>, Failure> {
-    let surface = &job.surfaces[clearance.surface];
+    piece: &'k CutterPiece<'g>,
+    t_work_fixture: &Chain<'g>,
+) -> Result<Kept<'k>, NotDone> {
+    let ToolShape::Surface(surface) = &piece.shape else { unreachable!("an edge is an error of the spec") };
+    let bindings = job.bindings();
+    let (position, normal) = (
+        t_work_fixture.point(put(surface.position, &bindings)),
+        t_work_fixture.direction(put(surface.normal, &bindings)),
+    );
+    let outputs: Vec<_> = position.0.into_iter().chain(normal.0).collect();
+    let unknowns: Vec<_> = piece.unknowns.iter().map(|unknown| unknown.variable).collect();
+    let tape = Tape::new(&outputs, &unknowns).expect("a job without errors leaves nothing unbound");
+    let value = |k: usize, share: f64| {
+        let unknown = &piece.unknowns[k];
+        unknown.low + share * (unknown.high - unknown.low)
+    };
+    let field = |counts: [usize; 2]| {
+        let mut evaluator = ScalarEvaluator::new(&tape);
+        let [rows, columns] = counts.map(Chart::shares);
+        let places = rows.iter().flat_map(|u| columns.iter().map(move |w| [*u, *w]));
+        let at = places.map(|[u, w]| {
+            let mut out = [0.0; 6];
+            evaluator.run(&[value(0, u), value(1, w)], &mut out);
+            out
+        });
+        PoseField::through(at.collect(), counts)
+    };
+    let place = move |shares: [f64; 2]| {
+        let text = |k: usize| {
+            let unknown = &piece.unknowns[k];
+            format!("{} {}", unknown.name, units::text(unknown.dimension, value(k, shares[k]), 4))
+        };
+        format!("{}, {}", text(0), text(1))
+    };
+    let mut off = f64::INFINITY;
+    for counts in GRIDS {
+        let found = field(counts);
+        off = found.tail();
+        if off <= NEAR {
+            return Ok(Kept { name: piece.name.clone(), obstacle: Obstacle::new(found), place: Box::new(place) });
+        }
+    }
+    Err(rough(&piece.name, off))
+}
+
+/// The part of a surface that its sample asks for.
+pub(super) fn sampled<'g>(job: &Job<'g>, milling: &Milling<'g>, surface: usize) -> Result<MilledArea<'g>, Failure> {
+    let surface = &job.surfaces[surface];
     let name = &surface.name;
     let unsampled = || {
         Failure::from(format!(
@@ -84,6 +163,10 @@ pub(super) fn sampled<'g>(
     })
 }
 
+fn is_milled(target: &Target<'_, '_>, clearance: &MillingClearance<'_>) -> bool {
+    matches!(clearance.obstacle, MillingObstacle::Surface(surface) if surface == target.milling.surface)
+}
+
 /// How large a ball may be that touches the milled surface everywhere and stays clear.
 fn largest_ball(
     target: &Target<'_, '_>,
@@ -91,7 +174,7 @@ fn largest_ball(
     clearance: &MillingClearance<'_>,
     (surface, obstacle): (&str, &Obstacle),
 ) -> Option<String> {
-    if clearance.surface == target.milling.surface {
+    if is_milled(target, clearance) {
         return None;
     }
     let stock = target.milling.stock;
@@ -111,8 +194,9 @@ fn least(
     target: &Target<'_, '_>,
     milled: &Milled<'_, '_>,
     clearance: &MillingClearance<'_>,
-    (patch, obstacle, body): (&Patch<'_, '_>, &Obstacle, &ToolBody),
+    (of, body): (&Kept<'_>, &ToolBody),
 ) -> (ClearanceKept, Option<NotDone>) {
+    let obstacle = &of.obstacle;
     let of_pass = |(pass, poses): (usize, &Vec<[f64; 6]>)| -> Option<Found> {
         let mut best: Option<Found> = None;
         for (position, pose) in poses.iter().enumerate() {
@@ -128,14 +212,15 @@ fn least(
     let ([pass, position], nearest) =
         found.into_iter().reduce(|a, b| if b.1.distance < a.1.distance { b } else { a }).expect("a milling has passes");
     let place = target.place(milled.shares(target, pass, position));
-    let foot = patch.place(nearest.shares);
+    let foot = (of.place)(nearest.shares);
     let kept = ClearanceKept {
-        surface: patch.name().to_string(),
+        surface: of.name.clone(),
         body: clearance.body_name.clone(),
         wanted: clearance.distance,
         least: nearest.distance,
         place: place.clone(),
         foot: foot.clone(),
+        proven: None,
     };
     let not_clear = (nearest.distance < clearance.distance).then(|| {
         let ClearanceKept { surface, body, wanted, least, .. } = &kept;
@@ -147,7 +232,7 @@ fn least(
         let details = [
             Some(format!("the nearest place of {surface} is at {foot}")),
             largest_ball(target, milled, clearance, (surface, obstacle)),
-            Some(if clearance.surface == target.milling.surface {
+            Some(if is_milled(target, clearance) {
                 "take a smaller cutter, or lean it more with `lead`".to_string()
             } else {
                 "take a smaller or longer cutter, or lean it with `tilt`".to_string()

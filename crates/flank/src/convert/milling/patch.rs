@@ -186,18 +186,17 @@ impl<'j, 'g> Patch<'j, 'g> {
                 return Ok(field);
             }
         }
-        Err(self.rough(off))
+        Err(rough(self.name(), off))
     }
+}
 
-    /// That no polynomials come near enough.
-    pub(super) fn rough(&self, off: f64) -> NotDone {
-        let message = format!(
-            "{} is not smooth enough between its ends: polynomials through exact points are off by up to {off:.1e} mm",
-            self.name()
-        );
-        let way = "take a smaller part of it, away from where it turns back or two of its pieces meet".to_string();
-        NotDone::new(NotDoneKind::NotMilled, self.name(), message).with(vec![way])
-    }
+/// That no polynomials come near enough to a surface.
+pub(super) fn rough(name: &str, off: f64) -> NotDone {
+    let message = format!(
+        "{name} is not smooth enough between its ends: polynomials through exact points are off by up to {off:.1e} mm"
+    );
+    let way = "take a smaller part of it, away from where it turns back or two of its pieces meet".to_string();
+    NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way])
 }
 
 /// Position and normal at the nodes of polynomials.

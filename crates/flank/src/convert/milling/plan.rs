@@ -31,12 +31,12 @@ pub(super) struct LeftAt {
 pub(super) struct Plan {
     /// The shares of the passes, and of the positions on each.
     pub(super) shares: [Vec<f64>; 2],
-    /// The highest cusp, less the stock.
-    pub(super) cusp: LeftAt,
+    /// The highest cusp; none beside a pass alone.
+    pub(super) cusp: Option<LeftAt>,
     /// What straight blocks leave at the most and at the least, less the stock.
     pub(super) blocks: [LeftAt; 2],
-    /// Between neighbouring passes, mm, at the most.
-    pub(super) step: f64,
+    /// Between neighbouring passes, mm, at the most; none of a pass alone.
+    pub(super) step: Option<f64>,
     /// Between neighbouring positions, mm, at the most.
     pub(super) block: f64,
 }
@@ -46,10 +46,22 @@ pub(super) fn evenly(count: usize) -> Vec<f64> {
 }
 
 /// A block that is not near the surface everywhere.
-struct Lost {
-    shares: [f64; 2],
+pub(super) struct Lost {
+    pub(super) shares: [f64; 2],
     /// How far the axis of the cutter is from the pole at the nearer end, radians, where all axes go straight.
-    from_pole: Option<f64>,
+    pub(super) from_pole: Option<f64>,
+}
+
+impl Lost {
+    pub(super) fn told(self, target: &Target<'_, '_>) -> NotDone {
+        let message = format!("the block at {} leaves the surface", target.place(self.shares));
+        let swings = self
+            .from_pole
+            .map(|angle| format!("its ends are {:.3} deg from the pole, where rotary axes swing", angle.to_degrees()));
+        let way = "lean the cutter away with `lead` or `tilt`, clamp the work at another angle, or make blocks shorter";
+        let details = swings.into_iter().chain([way.to_string()]).collect();
+        NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(details)
+    }
 }
 
 /// What a plan is made from.
@@ -75,7 +87,7 @@ impl Planner<'_, '_, '_> {
             widest / (count - 1) as f64
         };
         let (step, block) = (steps(0, passes.len()), steps(1, along.len()));
-        Ok(Plan { shares: [passes, along], cusp, blocks, step, block })
+        Ok(Plan { shares: [passes, along], cusp: Some(cusp), blocks, step: Some(step), block })
     }
 
     fn stock(&self) -> f64 {
@@ -86,6 +98,7 @@ impl Planner<'_, '_, '_> {
     fn passes(&self) -> Result<usize, NotDone> {
         let wanted = match self.target.milling.spacing {
             PassSpacing::Count(count) => return Ok(count),
+            PassSpacing::Side(_) => return Ok(1),
             PassSpacing::Step(step) => {
                 let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[0]));
                 let count = (widest.fold(0.0, f64::max) / step).ceil() as usize + 1;
@@ -184,35 +197,9 @@ impl Planner<'_, '_, '_> {
 
     /// How many positions on a pass.
     fn positions(&self, passes: &[f64]) -> Result<usize, NotDone> {
-        let wanted = match self.target.milling.blocks {
-            BlockLength::Count(count) => return Ok(count),
-            BlockLength::Step(step) => {
-                let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[1]));
-                let count = (widest.fold(0.0, f64::max) / step).ceil() as usize + 1;
-                return if count > MOST { Err(self.too_many_blocks(count)) } else { Ok(count.max(2)) };
-            }
-            BlockLength::Chord(chord) => chord,
-        };
+        let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[1])).fold(0.0, f64::max);
         let few: Vec<usize> = few_of(passes.len());
-        let mut count: usize = 17;
-        for _ in 0..40 {
-            let [most, least] = self.left_by_blocks(passes, &evenly(count), &few)?;
-            let off = most.height.max(-least.height);
-            if off <= wanted {
-                return Ok(count);
-            }
-            count = (((count - 1) as f64 * (off / wanted).sqrt()).ceil() as usize + 1).max(count + 1);
-            if count > MOST {
-                return Err(self.too_many_blocks(count));
-            }
-        }
-        Ok(count)
-    }
-
-    fn too_many_blocks(&self, count: usize) -> NotDone {
-        let name = &self.target.milling.name;
-        let message = format!("{name}: it would take {count} positions on a pass; at most {MOST} are made");
-        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec!["allow a larger chord error".to_string()])
+        positions(self.target, widest, |count| self.left_by_blocks(passes, &evenly(count), &few))
     }
 
     /// The most and the least that straight blocks leave on some passes.
@@ -237,22 +224,47 @@ impl Planner<'_, '_, '_> {
             Ok(ends)
         };
         let all: Result<Vec<[LeftAt; 2]>, Lost> = which.par_iter().map(of_pass).collect();
-        let all = all.map_err(|Lost { shares, from_pole }| {
-            let message = format!("the block at {} leaves the surface", self.target.place(shares));
-            let swings = from_pole.map(|angle| {
-                format!("its ends are {:.3} deg from the pole, where rotary axes swing", angle.to_degrees())
-            });
-            let way =
-                "lean the cutter away with `lead` or `tilt`, clamp the work at another angle, or make blocks shorter";
-            let details = swings.into_iter().chain([way.to_string()]).collect();
-            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(details)
-        })?;
+        let all = all.map_err(|lost| lost.told(self.target))?;
         Ok(all.into_iter().reduce(|a, b| [higher(a[0], b[0]), lower(a[1], b[1])]).expect("there are passes"))
     }
 }
 
+/// How many positions on a pass that is at the most so long, mm; `left` is what blocks between so many leave at the most and at the least.
+pub(super) fn positions(
+    target: &Target<'_, '_>,
+    widest: f64,
+    left: impl Fn(usize) -> Result<[LeftAt; 2], NotDone>,
+) -> Result<usize, NotDone> {
+    let too_many = |count: usize| {
+        let name = &target.milling.name;
+        let message = format!("{name}: it would take {count} positions on a pass; at most {MOST} are made");
+        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec!["allow a larger chord error".to_string()])
+    };
+    let wanted = match target.milling.blocks {
+        BlockLength::Count(count) => return Ok(count),
+        BlockLength::Step(step) => {
+            let count = (widest / step).ceil() as usize + 1;
+            return if count > MOST { Err(too_many(count)) } else { Ok(count.max(2)) };
+        }
+        BlockLength::Chord(chord) => chord,
+    };
+    let mut count: usize = 17;
+    for _ in 0..40 {
+        let [most, least] = left(count)?;
+        let off = most.height.max(-least.height);
+        if off <= wanted {
+            return Ok(count);
+        }
+        count = (((count - 1) as f64 * (off / wanted).sqrt()).ceil() as usize + 1).max(count + 1);
+        if count > MOST {
+            return Err(too_many(count));
+        }
+    }
+    Ok(count)
+}
+
 /// The motion of the cutter in each block between positions on a pass.
-fn blocks(axes: Option<&FreeAxes>, path: &PoseSeries, along: &[f64]) -> Vec<PoseSeries> {
+pub(super) fn blocks(axes: Option<&FreeAxes>, path: &PoseSeries, along: &[f64]) -> Vec<PoseSeries> {
     let rows: Vec<[f64; 6]> = along.iter().map(|share| path.at(*share)).collect();
     match axes {
         None => rows.windows(2).map(|pair| straight(pair[0], pair[1])).collect(),
@@ -270,15 +282,15 @@ fn few_of(count: usize) -> Vec<usize> {
     few
 }
 
-fn higher(a: LeftAt, b: LeftAt) -> LeftAt {
+pub(super) fn higher(a: LeftAt, b: LeftAt) -> LeftAt {
     if b.height > a.height { b } else { a }
 }
 
-fn lower(a: LeftAt, b: LeftAt) -> LeftAt {
+pub(super) fn lower(a: LeftAt, b: LeftAt) -> LeftAt {
     if b.height < a.height { b } else { a }
 }
 
-fn length([x, y, z]: [f64; 3]) -> f64 {
+pub(super) fn length([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
 }
 

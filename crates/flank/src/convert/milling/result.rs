@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::clamp::Clamping;
+use super::side::SideLeft;
 use crate::project::answer::{Answer, Timing};
 use crate::project::quantity::Travel;
 use crate::project::remark::{NotDone, Remark};
@@ -38,6 +40,8 @@ pub struct MillResult {
     pub cusp: Option<HeightLeft>,
     /// What the passes leave at points of the milled part.
     pub map: Option<HeightMap>,
+    /// What one pass with the side of the cutter leaves; null of other passes.
+    pub side: Option<SideLeft>,
     /// What straight blocks leave at the most and at the least, beside the stock; negative where they cut too deep.
     pub blocks: Option<[HeightLeft; 2]>,
     /// Whether the cutter goes straight in a block (tool-centre control), else all axes do.
@@ -54,6 +58,8 @@ pub struct MillResult {
     pub axes: Vec<MilledAxis>,
     /// The least angle of the cutter's axis from where a rotary axis is free.
     pub least_from_pole: Option<f64>,
+    /// How the work would be clamped for the least rates, if that is asked for.
+    pub clamping: Option<Clamping>,
     /// How far the polynomials between exact points may be off, from which heights follow, mm.
     pub polynomials_off: Option<f64>,
     /// What a program leaves, if one was read back.
@@ -112,6 +118,19 @@ pub struct ClearanceKept {
     pub place: String,
     /// The nearest place of the surface.
     pub foot: String,
+    /// What is proven, if that was asked for.
+    pub proven: Option<ProvenClearance>,
+}
+
+/// A proof that a part of the cutter stays clear on all blocks, between positions, too.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct ProvenClearance {
+    /// It comes nowhere nearer than this, mm, if it is proven.
+    pub limit: f64,
+    /// Blocks.
+    pub blocks: usize,
+    /// Blocks for which it is not proven.
+    pub open: usize,
 }
 
 /// What an axis does over all passes.

@@ -2,12 +2,12 @@
 
 use std::ops::Deref;
 
-use flank_chain_dsl::{Job, Milling};
+use flank_chain_dsl::{Job, Milling, PassSpacing};
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Chart, CutterPose, Lean, NoPose, PoseField, SurfaceFrame};
 
 use super::cutter::MillingCutter;
-use super::patch::{GRIDS, Lattice, NEAR, Patch, point_field};
+use super::patch::{GRIDS, Lattice, NEAR, Patch, point_field, rough};
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::session::Session;
 
@@ -30,7 +30,8 @@ impl<'j, 'g> Deref for Target<'j, 'g> {
 pub(super) struct Fields {
     /// Position and normal of the surface.
     pub(super) surface: PoseField,
-    /// Origin and axis of the cutter on passes that run forwards, and on those that run backwards if there are any.
+    /// Origin and axis of the cutter on passes that run forwards, and on those that run backwards if there are any; nothing of a pass with
+    /// the side.
     pub(super) cutter: Vec<PoseField>,
     /// How far the polynomials may be off, mm.
     pub(super) off: f64,
@@ -104,11 +105,17 @@ impl<'j, 'g> Target<'j, 'g> {
     /// # Errors
     /// What the surface does not have, or that its polynomials do not come as near.
     pub(super) fn fields(&self, cutter: &MillingCutter) -> Result<Fields, NotDone> {
+        let is_side = matches!(self.milling.spacing, PassSpacing::Side(_));
         let mut off = f64::INFINITY;
         for counts in GRIDS {
             let lattice = self.lattice(counts.map(Chart::shares))?;
             let surface = point_field(&lattice);
-            let directions: &[f64] = if self.milling.both_ways { &[1.0, -1.0] } else { &[1.0] };
+            // with its side the cutter lies as leaves least, not as it is told to lean
+            let directions: &[f64] = match self.milling.both_ways {
+                _ if is_side => &[],
+                true => &[1.0, -1.0],
+                false => &[1.0],
+            };
             let poses = directions.iter().map(|forward| {
                 let rows = lattice.each().map(|(shares, frame)| Ok(self.pose(shares, frame, cutter, *forward)?.row()));
                 Ok(PoseField::through(rows.collect::<Result<Vec<[f64; 6]>, NotDone>>()?, counts))
@@ -119,6 +126,6 @@ impl<'j, 'g> Target<'j, 'g> {
                 return Ok(Fields { surface, cutter: poses, off, lattice });
             }
         }
-        Err(self.rough(off))
+        Err(rough(self.name(), off))
     }
 }

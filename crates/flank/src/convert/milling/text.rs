@@ -4,7 +4,9 @@ use std::fmt;
 
 use flank_export::fixed;
 
+use super::clamp::Clamping;
 use super::result::{ClearanceKept, HeightLeft, HeightMap, MillResult, VerifiedProgram};
+use super::side::SideLeft;
 use crate::project::units;
 
 impl fmt::Display for MillResult {
@@ -32,6 +34,7 @@ impl MillResult {
             let along = &self.coordinates[1];
             facts.push(("positions", format!("{positions} along {along}, at most {} mm apart", fixed(length, 4))));
         }
+        facts.extend(self.side.iter().flat_map(SideLeft::facts));
         if let Some(path) = self.path_length {
             facts.push(("path", format!("{} mm", fixed(path, 1))));
         }
@@ -56,6 +59,14 @@ impl MillResult {
         for kept in &self.clearances {
             let (least, ClearanceKept { surface, body, place, .. }) = (fixed(kept.least, 4), kept);
             facts.push(("clear", format!("{body} comes as near as {least} mm to {surface}, at {place}")));
+            if let Some(proven) = kept.proven.as_ref().filter(|proven| proven.open == 0) {
+                let blocks = units::counted(proven.blocks, "block");
+                let limit = fixed(proven.limit, 4);
+                facts.push((
+                    "",
+                    format!("proven to be nowhere nearer than {limit} mm on {blocks}, between positions, too"),
+                ));
+            }
         }
         for axis in &self.axes {
             let [low, high] = axis.extent.map(|end| fixed(end, 3));
@@ -65,6 +76,7 @@ impl MillResult {
         if let Some(pole) = self.least_from_pole {
             facts.push(("pole", format!("at least {} deg away", fixed(pole, 3))));
         }
+        facts.extend(self.clamping.iter().flat_map(Clamping::facts));
         facts.extend(self.verified.iter().flat_map(of_program));
         facts.into_iter().map(|(name, text)| (name.to_string(), text)).collect()
     }
@@ -89,7 +101,7 @@ fn of_map(map: &HeightMap) -> Vec<(&'static str, String)> {
     facts
 }
 
-fn at(left: &HeightLeft) -> String {
+pub(super) fn at(left: &HeightLeft) -> String {
     format!("{} um, at {}", fixed(left.height_um, 4), left.place)
 }
 

@@ -1,0 +1,187 @@
+//! `flank mill` with the side of a cutter: nothing is left of an involute helicoid, programs leave what was planned, and what cannot be
+//! milled so is told.
+
+mod support;
+
+use std::path::Path;
+
+use serde_json::Value;
+use support::{flank, folder, text, written};
+
+const GEAR: [&str; 6] = [
+    "functions/hobbing",
+    "machines/hobbing_6axis",
+    "tools/hob_zi",
+    "hobbing/helical_gear",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
+const PINION: [&str; 7] = [
+    "functions/bevel",
+    "machines/cradle",
+    "tools/face_mill",
+    "functions/blanks_19x62",
+    "bevel/pinion_19x62",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
+const CYLINDER: &str = "conical_mill(half_angle: 0 deg, tip_radius: 1.5 mm, cutting_length: 20 mm, reach: 30 mm)";
+const STRIP: &str = "side z: -6 mm .. 6 mm by 1\n along rho: 51 mm .. 53.5 mm, chord 1 um\n";
+
+fn job(specs: &[&str], (base, surface): (&str, &str), cutter: &str, milling: &str) -> String {
+    let library = support::self_contained(specs);
+    format!(
+        "{library}\njob milled extends {base} {{\n machine mill = five_axis_table_table(work_z: 60 mm)\n tool cutter = {cutter}\n \
+         mount cutter on mill.cutter\n mill part of {surface} with cutter.cutting in mill.work {{\n{milling}\n }}\n}}\n"
+    )
+}
+
+fn gear(cutter: &str, milling: &str) -> String {
+    job(&GEAR, ("helical_gear", "upper_flank"), cutter, milling)
+}
+
+fn pinion(cutter: &str, milling: &str) -> String {
+    job(&PINION, ("pinion_19x62", "concave"), cutter, milling)
+}
+
+/// Exit code, what was printed, what was told.
+fn mill(spec: &str, out: &Path, arguments: &[&str]) -> (i32, String, String) {
+    let out = out.to_str().expect("a plain path");
+    let run = flank(&[&["mill", spec, "--out", out][..], arguments].concat());
+    (run.status.code().expect("it ends by itself"), text(&run.stdout), text(&run.stderr))
+}
+
+fn json(spec: &str, out: &Path, arguments: &[&str]) -> Value {
+    let (code, told, errors) = mill(spec, out, &[arguments, &["--json"]].concat());
+    assert_eq!(code, 0, "{errors}");
+    serde_json::from_str(&told).expect("JSON")
+}
+
+fn number(of: &Value) -> f64 {
+    of.as_f64().unwrap_or_else(|| panic!("{of} is no number"))
+}
+
+fn left(of: &Value) -> [f64; 2] {
+    [0, 1].map(|k| number(&of["left"][k]["height_um"]))
+}
+
+/// An involute helicoid is developable: a cylinder of any radius leaves nothing of it, and a cone neither.
+#[test]
+fn nothing_is_left_of_the_flank_of_a_helical_gear() {
+    let out = folder("side_gear");
+    let cone = CYLINDER.replace("half_angle: 0 deg", "half_angle: 3 deg");
+    for (cutter, stock) in [(CYLINDER, 0.0), (&CYLINDER.replace("1.5 mm", "4 mm"), 0.2), (&cone, 0.0)] {
+        let spec = written(&out, "milled.chain", &gear(cutter, &format!("{STRIP} stock {stock} mm")));
+        let found = json(&spec, &out, &[]);
+        let side = &found["side"];
+        assert_eq!(side["untouched"], 0, "{side}");
+        // points of the flank are solved to 1e-12 mm, and polynomials through them are as near as 1e-11 mm
+        assert!(left(side).iter().all(|left| left.abs() < 1e-6), "{cutter}: {side}");
+        let [low, high] = [0, 1].map(|k| number(&side["contact"][k]));
+        assert!(low > number(&side["side"][0]) && high < number(&side["side"][1]), "{side}");
+        assert_eq!((&found["passes"], &found["cusp"]), (&Value::from(1), &Value::Null));
+        assert!([0, 1].iter().all(|k| number(&found["blocks"][k]["height_um"]).abs() <= 1.0), "{found}");
+    }
+}
+
+/// A program leaves what the pass and its blocks leave.
+#[test]
+fn programs_leave_what_was_planned() {
+    let out = folder("side_program");
+    let spec = written(&out, "milled.chain", &gear(CYLINDER, STRIP));
+    // half of the last decimal on each of five axes; the work is some 200 mm from the rotary ones
+    let rounding = 1e3 * (3.0 * 0.5e-4 + 2.0 * 0.5e-5_f64.to_radians() * 200.0);
+    for (control, extension, words) in [("linuxcnc", "ngc", &[][..]), ("siemens", "mpf", &["--tcp"][..])] {
+        let planned = json(&spec, &out, &[&["--nc", control], words].concat());
+        let program = out.join(format!("milled.part.{extension}"));
+        let read = json(&spec, &out, &[&["--verify", program.to_str().unwrap()], words].concat());
+        let verified = &read["verified"];
+        assert_eq!(verified["untouched"], 0, "{verified}");
+        let [most, least] = left(verified);
+        let [over, under] = [0, 1].map(|k| number(&planned["blocks"][k]["height_um"]));
+        assert!(most < over + rounding && least > under - rounding, "{control}: {verified} {planned}");
+        assert!(most - least > 0.1 * (over - under), "{control}: {verified} {planned}");
+    }
+}
+
+/// A bevel flank is no ruled surface: what is left falls with the places at which the axis is free, and with a narrower strip.
+#[test]
+fn a_bevel_flank_leaves_what_it_leaves() {
+    let out = folder("side_bevel");
+    let cone = "conical_mill(half_angle: 4 deg, tip_radius: 1 mm, cutting_length: 25 mm, reach: 40 mm)";
+    let rms = |strip: &str, free: usize| {
+        let milling = format!("side profilewise: {strip} by {free}\n along lengthwise: 0.4 .. 0.6 by 9\n");
+        let spec = written(&out, "milled.chain", &pinion(cone, &milling));
+        let found = json(&spec, &out, &[]);
+        let side = &found["side"];
+        let [most, least] = left(side);
+        assert!(most > 0.0 && least < 0.0, "the mean is zero: {side}");
+        number(&side["rms_um"])
+    };
+    let [one, two, four] = [1, 2, 4].map(|free| rms("0.45 .. 0.55", free));
+    assert!(one > two && two > four && four > 0.0, "{one} {two} {four}");
+    assert!(rms("0.48 .. 0.52", 2) < 0.5 * two);
+}
+
+/// Exit code 3 with the reason and a way out.
+#[test]
+fn what_one_pass_does_not_cover_is_told() {
+    let out = folder("side_refused");
+    let short = CYLINDER.replace("cutting_length: 20 mm", "cutting_length: 10 mm");
+    let ball = "ball_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)";
+    let other = "side rho: 51 mm .. 53.5 mm by 1\n along z: -6 mm .. 6 mm, chord 1 um\n";
+    let cases: [(String, &[&str]); 3] = [
+        (
+            gear(&short, STRIP),
+            &["cutter.cutting has a side of 8.500 mm, and would touch upper_flank along", "longer side"],
+        ),
+        (gear(ball, STRIP), &["cutter.cutting has no straight side", "say `passes`"]),
+        (
+            gear(CYLINDER, other),
+            &["the side of cutter.cutting would lie along its own way on upper_flank", "let the side lie along z"],
+        ),
+    ];
+    for (spec, parts) in cases {
+        let spec = written(&out, "milled.chain", &spec);
+        let (code, _, told) = mill(&spec, &out, &["--nc", "fanuc"]);
+        assert_eq!(code, 3, "{told}");
+        parts.iter().for_each(|part| assert!(told.contains(part), "{part} in {told}"));
+        assert!(!out.join("milled.part.nc").exists(), "{told}");
+    }
+}
+
+/// What the language says of a pass with the side.
+#[test]
+fn words_that_do_not_go_together_are_errors() {
+    let out = folder("side_words");
+    let cases = [
+        (format!("{STRIP} lead 3 deg\n"), "`part` says `side` and `lead`"),
+        (format!("{STRIP} both ways\n"), "`part` says `side` and `both ways`"),
+        (format!("{STRIP} passes z: -6 mm .. 6 mm by 4\n"), "`part` says `side` and `passes`"),
+        (STRIP.replace("by 1", "step 1 mm"), "`step` does not say that"),
+        (STRIP.replace("by 1", "by 61"), "the number must be a whole number from 1 to 60, not 61"),
+        (format!("{STRIP} {}", STRIP.lines().next().unwrap()), "`side` is said twice"),
+    ];
+    for (milling, part) in cases {
+        let spec = written(&out, "milled.chain", &gear(CYLINDER, &milling));
+        let (code, _, told) = mill(&spec, &out, &[]);
+        assert!(code == 1 && told.contains("error[E0520]") && told.contains(part), "{part} in {code} {told}");
+    }
+}
+
+/// In point milling a straight side touches in its middle, where `tilt` lays it on the flank.
+#[test]
+fn points_are_milled_with_the_side_of_a_cone() {
+    let out = folder("side_points");
+    let cone = "conical_mill(half_angle: 20 deg, tip_radius: 0.5 mm, cutting_length: 4 mm, reach: 30 mm)";
+    let milling = "passes profilewise: 0.5 .. 0.7, scallop 1 um\n along lengthwise: 0.4 .. 0.6 by 9\n tilt -70 deg\n";
+    let spec = written(&out, "milled.chain", &job(&PINION, ("pinion_19x62", "convex"), cone, milling));
+    let found = json(&spec, &out, &[]);
+    let cusp = number(&found["cusp"]["height_um"]);
+    assert!(cusp > 0.0 && cusp <= 1.0, "{found}");
+    // a ball of the tip's radius takes many more passes
+    let ball = "ball_mill(radius: 0.5 mm, reach: 20 mm, holder_radius: 8 mm)";
+    let spec = written(&out, "milled.chain", &job(&PINION, ("pinion_19x62", "convex"), ball, milling));
+    let of_ball = json(&spec, &out, &[]);
+    assert!(number(&of_ball["passes"]) > 3.0 * number(&found["passes"]), "{} {}", of_ball["passes"], found["passes"]);
+}

@@ -1,0 +1,403 @@
+//! One pass with the straight side of the cutter.
+
+use flank_export::fixed;
+use flank_solver::{
+    Chart, LeftOnWay, NormalLine, PoseSeries, SidePass, SideStrip, StraightSide, SurfaceFrame, left_on_way, lowest,
+    side_directions,
+};
+use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::Serialize;
+
+use super::cutter::MillingCutter;
+use super::machine::{FreeAxes, Machine};
+use super::patch::Lattice;
+use super::plan::{self, LeftAt, Lost, Plan, evenly, higher, lower};
+use super::result::HeightLeft;
+use super::target::{Fields, Target};
+use super::{Milled, left_at, text};
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::requests::MillRequest;
+
+/// Rows and columns of the map of what is left, with both ends.
+const MAP: [usize; 2] = [15, 31];
+/// Points along the pass from which the directions of the axis begin.
+const STARTS: usize = 17;
+/// Points along the middle of the strip, until the tail of their polynomial is below [`NEAR`].
+const NODES: [usize; 3] = [33, 65, 129];
+/// mm.
+const NEAR: f64 = 1e-11;
+/// The pass begins and ends beyond the strip by what its slanting lines need, by so much more of that ...
+const BEYOND: f64 = 0.15;
+/// ... and by this share of the strip.
+const A_LITTLE: f64 = 0.005;
+/// Where the side is longer than its lines of contact, its lower end stands below the strip by this share of them.
+const OVERHANG: f64 = 0.05;
+/// Rows on which blocks are looked at.
+const ROWS: [f64; 3] = [0.0, 0.5, 1.0];
+
+/// What one pass with the side of the cutter leaves.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct SideLeft {
+    /// The most and the least that it leaves at the points of the map, beside the stock; negative where it cuts too deep.
+    pub left: Option<[HeightLeft; 2]>,
+    /// The root of the mean of the squares of it, um.
+    pub rms_um: Option<f64>,
+    /// Points of the map.
+    pub points: usize,
+    /// Points that the cutter does not reach.
+    pub untouched: usize,
+    /// How high above its origin the cutter touches, lowest and highest, mm.
+    pub contact: Option<[f64; 2]>,
+    /// Between which heights its side lies, mm.
+    pub side: [f64; 2],
+    /// How far the pass begins before and ends behind the surface, in shares of its length there.
+    pub beyond: [f64; 2],
+    /// Whether no change of the axis leaves less.
+    pub is_settled: bool,
+}
+
+impl SideLeft {
+    /// Names with what belongs to them.
+    pub(super) fn facts(&self) -> Vec<(&'static str, String)> {
+        let [low, high] = self.side.map(|end| fixed(end, 3));
+        let contact = self.contact.map(|ends| ends.map(|end| fixed(end, 3)));
+        let touches = contact.map_or(String::new(), |[from, to]| format!("; it touches from {from} to {to} mm"));
+        let mut facts = vec![("side", format!("one pass, from {low} to {high} mm above the tip{touches}"))];
+        if let (Some([most, least]), Some(rms)) = (&self.left, self.rms_um) {
+            facts.push(("side leaves", format!("at most {}", text::at(most))));
+            facts.push(("", format!("at least {}", text::at(least))));
+            facts.push(("", format!("{} um root mean square at {} points", fixed(rms, 4), self.points)));
+        }
+        facts
+    }
+
+    /// That parts of the surface are not reached, or that the search did not end.
+    pub(super) fn missed(&self, target: &Target<'_, '_>) -> Vec<NotDone> {
+        let cutter = &target.milling.cutter_name;
+        let mut missed = Vec::new();
+        if self.untouched > 0 {
+            let message = format!(
+                "{cutter} does not reach {} of {} points of {} in one pass",
+                self.untouched,
+                self.points,
+                target.name()
+            );
+            let way = "take a cutter with a longer side, or mill a narrower strip".to_string();
+            missed.push(NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way]));
+        }
+        if !self.is_settled {
+            let message = format!(
+                "the axis of {cutter} is not the best: the search for what leaves least on {} did not end",
+                target.name()
+            );
+            let way = "let the axis be free at fewer places, or mill a narrower strip".to_string();
+            missed.push(NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way]));
+        }
+        missed
+    }
+}
+
+/// The strip that a pass covers: its first, middle and last row.
+struct Strip<'t, 'j, 'g> {
+    target: &'t Target<'j, 'g>,
+    side: StraightSide,
+    rows: Lattice,
+    spindle_left: bool,
+}
+
+/// Functions of the share of the strip's length.
+struct Start {
+    /// The turn of the axis about the normal, and how far the first and the last row are along the cutter's lines, mm.
+    series: PoseSeries,
+    /// How far the pass goes beyond both ends.
+    beyond: [f64; 2],
+}
+
+impl Start {
+    fn at(&self, share: f64) -> [f64; 3] {
+        let [turn, first, last, ..] = self.series.at(share.clamp(0.0, 1.0));
+        [turn, first, last]
+    }
+
+    /// The share of the strip's length at one of the pass.
+    fn share(&self, of_pass: f64) -> f64 {
+        -self.beyond[0] + of_pass * (1.0 + self.beyond[0] + self.beyond[1])
+    }
+}
+
+impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
+    fn new(target: &'t Target<'j, 'g>, side: StraightSide) -> Result<Strip<'t, 'j, 'g>, NotDone> {
+        let rows = target.lattice([ROWS.to_vec(), Chart::shares(STARTS)])?;
+        let middle = rows.at(1, STARTS / 2);
+        let [across, along] = middle.steps.map(Vector3::from);
+        let spindle_left = Vector3::from(middle.normal).cross(&along).dot(&across) > 0.0;
+        Ok(Strip { target, side, rows, spindle_left })
+    }
+
+    /// Where the search begins: each field of directions in which the surface may take the side.
+    ///
+    /// # Errors
+    /// That there is none.
+    fn starts(&self) -> Result<Vec<Start>, NotDone> {
+        let [low, high] = self.side.heights;
+        let radius = self.side.radius_at(0.5 * (low + high)) / self.side.half_angle.cos();
+        let directions: Vec<Vec<f64>> =
+            (0..STARTS).map(|column| side_directions(self.rows.at(1, column), self.spindle_left, radius)).collect();
+        let middle = STARTS / 2;
+        let start = |first: &f64| {
+            let mut turns = [*first; STARTS];
+            let columns = (middle + 1..STARTS).map(|k| (k, k - 1)).chain((0..middle).rev().map(|k| (k, k + 1)));
+            for (column, before) in columns {
+                let before = turns[before];
+                let nearest =
+                    directions[column].iter().copied().min_by(|a, b| (a - before).abs().total_cmp(&(b - before).abs()));
+                turns[column] = nearest.unwrap_or(before);
+            }
+            self.start(&turns)
+        };
+        let starts: Vec<Start> = directions[middle].iter().map(start).collect();
+        if starts.is_empty() {
+            let message = format!(
+                "the side of {} would lie along its own way on {} at {}: that is where the surface is straightest",
+                self.target.milling.cutter_name,
+                self.target.name(),
+                self.target.place([0.5, 0.5])
+            );
+            let way =
+                format!("let the side lie along {}, and the pass go the other way", self.target.milling.area.names[1]);
+            return Err(NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way]));
+        }
+        Ok(starts)
+    }
+
+    fn start(&self, turns: &[f64; STARTS]) -> Start {
+        let of_column = |column: usize| {
+            let middle = self.rows.at(1, column);
+            let along = Vector3::from(middle.steps[1]);
+            let across = Vector3::from(middle.normal).cross(&along).normalize();
+            let turn = turns[column];
+            // how far the line from the middle is from a row's point of the same share, along the pass, in shares
+            let [[first, before], [last, behind]] = [0, 2].map(|row| {
+                let off = Vector3::from(self.rows.at(row, column).position) - Vector3::from(middle.position);
+                let width = off.dot(&across) * if self.spindle_left { 1.0 } else { -1.0 };
+                let shift = off.dot(&along) / along.norm() - width * turn.tan();
+                [width.abs() / turn.cos(), shift / along.norm()]
+            });
+            [turn, first, last, before, behind, 0.0]
+        };
+        let columns: Vec<[f64; 6]> = (0..STARTS).map(of_column).collect();
+        let reach = |column: usize, sign: f64| {
+            let [_, _, _, before, behind, _] = columns[column];
+            (1.0 + BEYOND) * (sign * before).max(sign * behind).max(0.0) + A_LITTLE
+        };
+        let beyond = [reach(0, -1.0), reach(STARTS - 1, 1.0)];
+        Start { series: PoseSeries::through(&columns), beyond }
+    }
+
+    /// The middle of the strip as polynomials over the pass.
+    fn middle(&self, start: &Start) -> Result<PoseSeries, NotDone> {
+        let mut found = None;
+        for count in NODES {
+            let along: Vec<f64> = Chart::shares(count).into_iter().map(|share| start.share(share)).collect();
+            let lattice = self.target.lattice([vec![0.5], along])?;
+            let series = PoseSeries::through(&lattice.frames.iter().map(line_of).collect::<Vec<NormalLine>>());
+            let off = series.tail();
+            found = Some(series);
+            if off <= NEAR {
+                break;
+            }
+        }
+        Ok(found.expect("there are counts"))
+    }
+
+    /// The best pass from a start, of which the axis is free at so many places.
+    fn pass(&self, start: &Start, free: usize, points: &[NormalLine]) -> Result<Option<SidePass>, NotDone> {
+        let StraightSide { heights: [low, _], half_angle, .. } = self.side;
+        let places: Vec<f64> = match free {
+            1 => vec![0.5],
+            _ => Chart::shares(free),
+        };
+        let places: Vec<[f64; 3]> = places.into_iter().map(|share| start.at(start.share(share))).collect();
+        let needed = evenly(STARTS).into_iter().map(|share| start.at(share)).map(|[_, first, last]| first + last);
+        let needed = needed.fold(0.0, f64::max);
+        let length = self.side.length();
+        if needed > length {
+            let cutter = &self.target.milling.cutter_name;
+            let message = format!(
+                "{cutter} has a side of {length:.3} mm, and would touch {} along {needed:.3} mm",
+                self.target.name()
+            );
+            let way = "take a cutter with a longer side, or mill a narrower strip".to_string();
+            return Err(NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way]));
+        }
+        let overhang = (0.5 * (length - needed)).min(OVERHANG * needed);
+        let strip = SideStrip {
+            middle: self.middle(start)?,
+            spindle_left: self.spindle_left,
+            side: self.side,
+            heights: places.iter().map(|[_, first, _]| low + (overhang + first) * half_angle.cos()).collect(),
+            stock: self.target.milling.stock,
+        };
+        let turns: Vec<f64> = places.iter().map(|[turn, ..]| *turn).collect();
+        Ok(strip.nearest_pass(&turns, points))
+    }
+}
+
+fn line_of(frame: &SurfaceFrame) -> NormalLine {
+    let ([x, y, z], [nx, ny, nz]) = (frame.position, frame.normal);
+    [x, y, z, nx, ny, nz]
+}
+
+/// Finds the pass, its positions, and takes the machine along it.
+///
+/// # Errors
+/// That the cutter has no side, or none that covers the surface; what the surface does not have; that no number of blocks is enough.
+pub(super) fn milled<'p, 'g>(
+    target: &Target<'_, 'g>,
+    cutter: &MillingCutter,
+    machine: Option<Machine<'p, 'g>>,
+    fields: &Fields,
+    (request, free): (&MillRequest, usize),
+) -> Result<(Milled<'p, 'g>, SideLeft), NotDone> {
+    let name = &target.milling.cutter_name;
+    let side = cutter.cutting.side().ok_or_else(|| {
+        let message = format!("{name} has no straight side: one pass covers {} with that alone", target.name());
+        let way = "take a cutter such as `conical_mill`, whose half angle may be zero, or say `passes`".to_string();
+        NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way])
+    })?;
+    let map = target.lattice(MAP.map(evenly))?;
+    let points: Vec<NormalLine> = map.frames.iter().map(line_of).collect();
+    let strip = Strip::new(target, side)?;
+    let mut best: Option<(SidePass, Start)> = None;
+    let mut failed = None;
+    for start in strip.starts()? {
+        match strip.pass(&start, free, &points) {
+            Ok(Some(pass)) => {
+                let is_better = best.as_ref().is_none_or(|(known, _)| squares(&pass.left) < squares(&known.left));
+                best = if is_better { Some((pass, start)) } else { best };
+            }
+            Ok(None) => {}
+            Err(why) => failed = failed.or(Some(why)),
+        }
+    }
+    let Some((pass, start)) = best else {
+        return Err(failed.unwrap_or_else(|| {
+            let message = format!("one pass of {name} does not cover {}: it is bent too much", target.name());
+            let way = "mill a narrower strip, or say `passes`".to_string();
+            NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way])
+        }));
+    };
+    let on_way = left_on_way(&pass.way, &cutter.cutting, &points);
+    let told = side_left(target, &map, &on_way, (&pass, &start, side));
+    let few: Vec<[f64; 6]> = evenly(9).into_iter().map(|share| pass.way.at(share)).collect();
+    let machine = machine.map(|machine| machine.on_best_elbow(&[few]));
+    let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
+    let rows = ROWS.map(|row| PassedRow::new(fields, cutter, &pass.way, row));
+    let blocks = |count: usize| left_by_blocks(target, cutter, (&pass.way, &start, axes), &rows, &evenly(count));
+    let widest = way_length(&pass.way);
+    let count = plan::positions(target, widest, blocks)?;
+    let along = evenly(count);
+    let poses: Vec<[f64; 6]> = along.iter().map(|share| pass.way.at(*share)).collect();
+    let shares = [vec![0.5], along.iter().map(|share| start.share(*share)).collect::<Vec<f64>>()];
+    let lattice = target.lattice(shares.clone())?;
+    let longest = poses.windows(2).map(|pair| super::distance(&pair[0], &pair[1])).fold(0.0, f64::max);
+    let plan = Plan { shares, cusp: None, blocks: blocks(count)?, step: None, block: longest };
+    let axes = machine.iter().map(|machine| machine.axes.along(&poses)).collect();
+    Ok((Milled { plan, lattice, ways: vec![pass.way], poses: vec![poses], axes, machine }, told))
+}
+
+fn squares(left: &[f64]) -> f64 {
+    left.iter().map(|left| left * left).sum()
+}
+
+/// How long the way of the origin is, mm.
+fn way_length(way: &PoseSeries) -> f64 {
+    let places: Vec<[f64; 6]> = evenly(65).into_iter().map(|share| way.at(share)).collect();
+    places.windows(2).map(|pair| super::distance(&pair[0], &pair[1])).sum()
+}
+
+fn side_left(
+    target: &Target<'_, '_>,
+    map: &Lattice,
+    found: &[Option<LeftOnWay>],
+    (pass, start, side): (&SidePass, &Start, StraightSide),
+) -> SideLeft {
+    let stock = target.milling.stock;
+    let at = |(shares, found): ([f64; 2], &Option<LeftOnWay>)| {
+        found.map(|found| LeftAt { shares, height: found.height - stock })
+    };
+    let known: Vec<LeftAt> = map.each().map(|(shares, _)| shares).zip(found).filter_map(at).collect();
+    let ends = known.iter().copied().reduce(higher).zip(known.iter().copied().reduce(lower));
+    let above = found.iter().flatten().map(|found| found.above);
+    let mean = known.iter().map(|left| left.height.powi(2)).sum::<f64>() / known.len() as f64;
+    SideLeft {
+        left: ends.map(|(most, least)| [left_at(target, most), left_at(target, least)]),
+        rms_um: (!known.is_empty()).then(|| 1e3 * mean.sqrt()),
+        points: found.len(),
+        untouched: found.len() - known.len(),
+        contact: above.clone().reduce(f64::min).zip(above.reduce(f64::max)).map(|(low, high)| [low, high]),
+        side: side.heights,
+        beyond: start.beyond,
+        is_settled: pass.is_settled,
+    }
+}
+
+/// A row of the strip, and where the cutter passes it.
+struct PassedRow {
+    share: f64,
+    /// Points and normals over the share of the strip's length.
+    line: PoseSeries,
+    /// At even shares of that, at which share of the way the cutter passes; not a number where it does not.
+    passed: Vec<f64>,
+}
+
+impl PassedRow {
+    fn new(fields: &Fields, cutter: &MillingCutter, way: &PoseSeries, share: f64) -> PassedRow {
+        let line = fields.surface.pass(share);
+        let points: Vec<NormalLine> = evenly(MAP[1]).into_iter().map(|share| line.at(share)).collect();
+        let found = left_on_way(way, &cutter.cutting, &points);
+        PassedRow {
+            share,
+            line,
+            passed: found.iter().map(|found| found.map_or(f64::NAN, |found| found.share)).collect(),
+        }
+    }
+
+    /// The share of the strip's length at which the cutter passes at a share of the way, nearly.
+    fn passed_at(&self, of_way: f64) -> Option<f64> {
+        let within = |pair: &[f64]| pair[0] <= of_way && of_way <= pair[1] && pair[0] < pair[1];
+        let before = self.passed.windows(2).position(within)?;
+        let [from, to] = [self.passed[before], self.passed[before + 1]];
+        Some((before as f64 + (of_way - from) / (to - from)) / (self.passed.len() - 1) as f64)
+    }
+}
+
+/// The most and the least that straight blocks leave beside what the pass itself leaves: in the middle of each, on three rows.
+fn left_by_blocks(
+    target: &Target<'_, '_>,
+    cutter: &MillingCutter,
+    (way, start, axes): (&PoseSeries, &Start, Option<&FreeAxes>),
+    rows: &[PassedRow],
+    along: &[f64],
+) -> Result<[LeftAt; 2], NotDone> {
+    let blocks = plan::blocks(axes, way, along);
+    let mut ends = [LeftAt { shares: [0.5, start.share(0.0)], height: 0.0 }; 2];
+    for row in rows {
+        for (pair, block) in along.windows(2).zip(&blocks) {
+            let middle = 0.5 * (pair[0] + pair[1]);
+            let Some(place) = row.passed_at(middle) else { continue };
+            let line = row.line.at(place);
+            let Some(exact) = lowest(way, &cutter.cutting, &line, middle) else { continue };
+            let from_pole = |axes: &FreeAxes| {
+                let ends = [pair[0], pair[1]].map(|share| axes.angle_from_pole(&way.at(share)));
+                ends[0].min(ends[1])
+            };
+            let lost = || Lost { shares: [row.share, place], from_pole: axes.map(from_pole) };
+            let found = lowest(block, &cutter.cutting, &line, 0.5).ok_or_else(|| lost().told(target))?;
+            let left = LeftAt { shares: [row.share, place], height: found.height - exact.height };
+            ends = [higher(ends[0], left), lower(ends[1], left)];
+        }
+    }
+    Ok(ends)
+}
