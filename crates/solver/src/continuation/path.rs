@@ -122,10 +122,14 @@ impl<'r> Path<'r> {
                 self.at.determinant = determinant(at, ranges);
                 self.stage = Stage::Step(Descent::new(ranges, &self.guess));
             }
-            Stage::Step(descent) => match self.descended(descent, self.share, at, conditions) {
-                Ok(end) => self.look_back(end),
-                Err(descent) => self.stage = Stage::Step(descent),
-            },
+            Stage::Step(mut descent) => {
+                if goes_on(&mut descent, at) {
+                    self.stage = Stage::Step(descent);
+                } else {
+                    let end = self.ended(descent, self.share, at, conditions);
+                    self.look_back(end);
+                }
+            }
             Stage::There(end) => {
                 let led = self.led(at, &self.at.unknowns, &end.solution.unknowns);
                 self.stage = Stage::Back(end, led);
@@ -137,14 +141,16 @@ impl<'r> Path<'r> {
                 self.evaluations += 2;
                 if leads { self.look_halfway(end) } else { self.shorten(end.solution) }
             }
-            Stage::Halfway(end, descent) => match self.descended(descent, self.halfway(), at, conditions) {
-                Ok(between) => {
+            Stage::Halfway(end, mut descent) => {
+                if goes_on(&mut descent, at) {
+                    self.stage = Stage::Halfway(end, descent);
+                } else {
+                    let between = self.ended(descent, self.halfway(), at, conditions);
                     let determinants = [self.at.determinant, end.determinant];
                     let is_alike = is_between(determinants, 0.5, between.determinant);
                     if between.solution.is_root() && is_alike { self.arrive(end) } else { self.shorten(end.solution) }
                 }
-                Err(descent) => self.stage = Stage::Halfway(end, descent),
-            },
+            }
             Stage::Arrival(solution) => {
                 self.evaluations += 1;
                 if scaled_determinant(at, ranges).abs() < CLEAR {
@@ -153,10 +159,13 @@ impl<'r> Path<'r> {
                     self.last = solution;
                 }
             }
-            Stage::Again(descent) => match self.descended(descent, 1.0, at, conditions) {
-                Ok(end) => self.last = end.solution,
-                Err(descent) => self.stage = Stage::Again(descent),
-            },
+            Stage::Again(mut descent) => {
+                if goes_on(&mut descent, at) {
+                    self.stage = Stage::Again(descent);
+                } else {
+                    self.last = self.ended(descent, 1.0, at, conditions).solution;
+                }
+            }
             Stage::Nothing => {}
         }
     }
@@ -175,22 +184,18 @@ impl<'r> Path<'r> {
         0.5 * (self.at.share + self.share)
     }
 
-    /// Goes on with Newton at the targets of a share of the way; the end, or Newton if that is not yet reached.
-    fn descended(
+    /// Where Newton ended at the targets of a share of the way.
+    fn ended(
         &mut self,
-        mut descent: Descent<'r>,
+        descent: Descent<'r>,
         share: f64,
         at: &impl Linearized,
         conditions: &mut Conditions<'_>,
-    ) -> Result<End, Descent<'r>> {
-        descent.take(at);
-        if descent.asks().is_some() {
-            return Err(descent);
-        }
+    ) -> End {
         conditions.set_parameters(&self.target(share));
         let solution = descent.ended(conditions);
         self.evaluations += u64::from(solution.iterations);
-        Ok(End { solution, determinant: determinant(at, self.ranges) })
+        End { solution, determinant: determinant(at, self.ranges) }
     }
 
     /// Whether a step leads along one branch: the determinant does not vanish on the way, and tangents lead from one end to the other.
@@ -256,6 +261,12 @@ impl<'r> Path<'r> {
             self.last.residual = f64::NAN;
         }
     }
+}
+
+/// Takes residuals and Jacobian where Newton asked for them; whether it asks for more.
+fn goes_on(descent: &mut Descent<'_>, at: &impl Linearized) -> bool {
+    descent.take(at);
+    descent.asks().is_some()
 }
 
 /// Whether a determinant at a share of the way between two others is what it is along one branch.
