@@ -184,6 +184,37 @@ fn pictures_reports_and_pages_show_what_is_left() {
     assert!(told.contains("no `mill` of it says which surface is milled"), "{told}");
 }
 
+/// Bull-nose and barrel cutters, and both ways: each map ends at its highest ridge, and programs leave what is planned.
+#[test]
+fn other_cutters_leave_what_is_planned() {
+    let out = folder("mill_cutters");
+    let bull = "bull_mill(radius: 1 mm, corner: 0.5 mm, reach: 20 mm, holder_radius: 8 mm)";
+    let barrel = "barrel_mill(radius: 3 mm, barrel_radius: 40 mm, height: 5 mm)";
+    let cases = [
+        (bull, AREA.to_string() + "lead 12 deg\n tilt 20 deg"),
+        (barrel, AREA.replace("0.45 .. 0.55 by 9", "0.3 .. 0.7 by 4") + "lead 2 deg\n tilt 88 deg"),
+        (BALL, AREA.to_string() + "lead 5 deg\n tilt 70 deg\n both ways"),
+    ];
+    let rounding = 1e3 * (3.0 * 0.5e-4 + 2.0 * 0.5e-5_f64.to_radians() * 200.0);
+    for (cutter, milling) in cases {
+        let spec = written(&out, "milled.chain", &job("work_z: 60 mm", cutter, &milling));
+        json(&spec, &out, &["--nc", "linuxcnc"]);
+        let program = out.join("milled.part.ngc");
+        let read = json(&spec, &out, &["--verify", program.to_str().unwrap()]);
+        let height = |value: &Value| value["height_um"].as_f64().expect("a height");
+        let (cusp, blocks) = (height(&read["cusp"]), height(&read["blocks"][0]));
+        let (map, verified) = (&read["map"], &read["verified"]);
+        assert_eq!([&map["untouched"], &verified["untouched"]], [0, 0], "{cutter}: {map}");
+        assert!(
+            height(&map["left"][0]) <= cusp + 1e-9 && height(&map["left"][0]) > 0.4 * cusp,
+            "{cutter}: {map} {cusp}"
+        );
+        assert!(height(&map["left"][1]) > -1e-6, "{cutter}: {map}");
+        let left = height(&verified["left"][0]);
+        assert!(left < cusp + blocks.max(0.0) + rounding, "{cutter}: {left} um, planned {cusp} and {blocks}");
+    }
+}
+
 /// Whole programs, also of several spaces, run through LinuxCNC's interpreter: each cutting block arrives, nothing is refused.
 #[test]
 fn linuxcnc_runs_whole_programs() {

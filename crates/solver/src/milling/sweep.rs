@@ -131,7 +131,7 @@ impl Ball {
             ends.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at[1]), high.max(at[1])));
         // the centre of a ball is the best there is; of what is flat and wide it lies in its middle
         let centres = pieces.iter().filter_map(|piece| match *piece {
-            OutlinePiece::Arc { center: [rho, z], .. } if rho == 0.0 => Some(z),
+            OutlinePiece::Arc { center: [0.0, z], .. } => Some(z),
             _ => None,
         });
         let of = |z: f64| Ball { z, radius: ends.iter().map(|at| at[0].hypot(at[1] - z)).fold(0.0, f64::max) };

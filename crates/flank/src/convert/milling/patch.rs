@@ -106,12 +106,9 @@ impl<'j, 'g> Patch<'j, 'g> {
     pub(super) fn labels(&self) -> [String; 2] {
         let area = &self.area;
         let Some((_, is_across)) = area.shares else { return area.names.clone() };
-        let sides = if is_across { [["toe", "heel"], ["root", "tip"]] } else { [["root", "tip"], ["toe", "heel"]] };
-        [0, 1].map(|k| {
-            let [first, last] = sides[k];
-            let (low, high) = area.ranges[k];
-            if low <= high { format!("{first} -> {last}") } else { format!("{last} -> {first}") }
-        })
+        let sides = ["root -> tip", "toe -> heel"].map(str::to_string);
+        let [across, along] = sides;
+        if is_across { [along, across] } else { [across, along] }
     }
 
     /// Points at rows and columns of shares, row by row.
