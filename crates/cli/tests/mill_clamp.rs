@@ -25,8 +25,8 @@ machine with_wedge extends five_axis_table_table {
     frame clamped in work = rotate_y(wedge)
 }
 tool chuck {
-    surface face(rho: length in 5 mm .. 40 mm, turn: angle in -180 deg .. 180 deg) {
-        at = [rho * cos(turn), rho * sin(turn), 0 mm]
+    surface face(out: length in 5 mm .. 300 mm, turn: angle in -180 deg .. 180 deg) {
+        at = [out * cos(turn), out * sin(turn), 0 mm]
         body towards [0, 0, -1]
     }
 }
@@ -90,7 +90,7 @@ fn the_best_clamping_is_that_of_many_tries() {
     };
     let best = set(number(&settings[0]["after"]), number(&settings[1]["after"])).expect("it is possible");
     assert!((best - number(&clamping["after"]["rotary"])).abs() < 1e-12, "{best} {clamping}");
-    assert!(best < 0.9 * rotary(&found), "{best} {clamping}");
+    assert!(best < 0.99 * rotary(&found), "{best} {clamping}");
     for k in 0..=16 {
         let tried = set(-40.0 + 5.0 * f64::from(k), 60.0);
         // the search ends with steps of a ten thousandth of the range
@@ -141,8 +141,7 @@ fn fixtures_are_kept_clear_of() {
         })
         .fold(f64::INFINITY, f64::min);
     let least = number(&kept["least"]);
-    // unless the face ends before: then the table's edge is nearest, which is farther
-    assert!(least > lowest - 1e-9, "{least} {lowest}");
+    assert!((least - lowest).abs() < 1e-9, "{least} {lowest}");
     let moved = job("cutter", " clear of jaws.face by 1 mm with ball.whole\n");
     let (code, _, told) = mill(&written(&out, "moved.chain", &moved), &out, &[]);
     assert!(code == 1 && told.contains("error[E0520]: `jaws.face` moves against the work"), "{told}");
@@ -155,7 +154,7 @@ fn clearances_are_proven_between_positions_or_told_not_to_be() {
     let spec = written(&out, "milled.chain", &clear(0.1));
     let found = json(&spec, &out, &["--certify"]);
     let kept = &found["clearances"][0];
-    assert_eq!((number(&kept["proven"]["open"]), number(&kept["proven"]["blocks"])), (0.0, 40.0), "{kept}");
+    assert_eq!((number(&kept["proven"]["proven"]), number(&kept["proven"]["blocks"])), (40.0, 40.0), "{kept}");
     assert!((number(&kept["proven"]["limit"]) - 0.099).abs() < 1e-12, "{kept}");
     let least = number(&kept["least"]);
     // what is solved at the positions is kept, but not by so much more between them

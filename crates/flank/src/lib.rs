@@ -80,8 +80,7 @@ pub use convert::convert;
 pub use convert::milling::clamp::{ClampedRates, ClampedSetting, Clamping};
 pub use convert::milling::mill;
 pub use convert::milling::result::{
-    BallAt, ClearanceKept, CurvatureAt, HeightLeft, HeightMap, MillResult, MilledAxis, ProvenClearance,
-    VerifiedProgram,
+    BallAt, ClearanceKept, CurvatureAt, HeightLeft, HeightMap, MillResult, MilledAxis, ProvenClearance, VerifiedProgram,
 };
 pub use convert::milling::side::SideLeft;
 pub use convert::result::{

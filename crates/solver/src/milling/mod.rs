@@ -13,5 +13,5 @@ pub(crate) mod height;
 pub(crate) mod outline;
 pub(crate) mod pose;
 pub(crate) mod series;
-pub(crate) mod sweep;
 pub(crate) mod side;
+pub(crate) mod sweep;

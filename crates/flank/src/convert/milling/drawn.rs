@@ -187,11 +187,11 @@ impl Gap {
         let zero = at_ridge(across);
         let stock = target.milling.stock;
         let point = |k: usize, height: f64| [ways[k] - zero, 1e3 * (height - stock)];
-        let near = (0..passes.len()).filter(|k| passes.len() > 1 && (passes[*k] - across).abs() <= (STEPS + 2.0) * step);
+        let near =
+            (0..passes.len()).filter(|k| passes.len() > 1 && (passes[*k] - across).abs() <= (STEPS + 2.0) * step);
         let cutter_on = |number: usize| {
             let pass = &milled.ways[number];
-            let height =
-                |k: usize| lowest(pass, &cutter.cutting, &lines[k], along).map(|found| point(k, found.height));
+            let height = |k: usize| lowest(pass, &cutter.cutting, &lines[k], along).map(|found| point(k, found.height));
             (0..PLACES).filter_map(height).collect()
         };
         let left = (0..PLACES).into_par_iter().filter_map(|k| swept.left(&lines[k]).map(|left| point(k, left.height)));

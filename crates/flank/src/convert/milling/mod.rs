@@ -248,7 +248,8 @@ fn milled<'p, 'g>(
     };
     let poses = (0..plan.shares[0].len()).map(of_pass).collect::<Result<Vec<_>, NotDone>>()?;
     let axes = machine.iter().flat_map(|machine| poses.iter().map(|pass| machine.axes.along(pass))).collect();
-    let ways = plan.shares[0].par_iter().enumerate().map(|(number, share)| fields.of_pass(number).pass(*share)).collect();
+    let ways =
+        plan.shares[0].par_iter().enumerate().map(|(number, share)| fields.of_pass(number).pass(*share)).collect();
     Ok(Milled { plan, lattice, ways, poses, axes, machine })
 }
 

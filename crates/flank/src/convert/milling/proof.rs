@@ -9,10 +9,11 @@ use super::plan::straight;
 use super::result::ProvenClearance;
 use super::target::Target;
 use crate::project::remark::{NotDone, NotDoneKind};
-use crate::project::units;
 
 /// How many boxes a proof may look at in one block.
-const MOST_BOXES: usize = 200_000;
+const MOST_BOXES: usize = 20_000;
+/// Blocks that are looked at together; where one of them stays open, no more follow.
+const TOGETHER: usize = 64;
 
 /// Whether a body is proven to stay so far away on all blocks, between the positions, too.
 pub(super) fn proven(
@@ -31,19 +32,23 @@ pub(super) fn proven(
     let proof = ClearProof::new(&of.obstacle, body);
     let blocks: Vec<[usize; 2]> =
         (0..poses.len()).flat_map(|pass| (0..poses[pass].len() - 1).map(move |k| [pass, k])).collect();
-    let found: Vec<Clear> =
-        blocks.par_iter().map(|[pass, k]| proof.along(&block(*pass, *k), limit, MOST_BOXES)).collect();
-    let open = found.iter().filter(|found| **found != Clear::Proven).count();
+    let mut found: Vec<Clear> = Vec::with_capacity(blocks.len());
+    for together in blocks.chunks(TOGETHER) {
+        let of_block = |[pass, k]: &[usize; 2]| proof.along(&block(*pass, *k), limit, MOST_BOXES);
+        found.extend(together.par_iter().map(of_block).collect::<Vec<Clear>>());
+        if found.iter().any(|found| *found != Clear::Proven) {
+            break;
+        }
+    }
+    let known = found.iter().filter(|found| **found == Clear::Proven).count();
     let first = found.iter().position(|found| *found != Clear::Proven);
-    let proven = ProvenClearance { limit, blocks: blocks.len(), open };
+    let proven = ProvenClearance { limit, blocks: blocks.len(), proven: known };
     let not_proven = first.map(|first| {
         let [pass, position] = blocks[first];
         let place = target.place(milled.shares(target, pass, position));
         let message = format!(
-            "it is not proven that {body_name} comes nowhere nearer than {limit:.4} mm to {}: not in {} of {}, first in that at {place}",
-            of.name,
-            open,
-            units::counted(blocks.len(), "block")
+            "it is not proven that {body_name} comes nowhere nearer than {limit:.4} mm to {}: first not in the block at {place}",
+            of.name
         );
         let why = match found[first] {
             Clear::Missed { distance, shares, .. } => {

@@ -129,8 +129,8 @@ pub struct ProvenClearance {
     pub limit: f64,
     /// Blocks.
     pub blocks: usize,
-    /// Blocks for which it is not proven.
-    pub open: usize,
+    /// Blocks for which it is; after the first ones for which it is not, no more are looked at.
+    pub proven: usize,
 }
 
 /// What an axis does over all passes.

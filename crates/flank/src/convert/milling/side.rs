@@ -200,7 +200,14 @@ impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
         let mut found = None;
         for count in NODES {
             let along: Vec<f64> = Chart::shares(count).into_iter().map(|share| start.share(share)).collect();
-            let lattice = self.target.lattice([vec![0.5], along])?;
+            let lattice = self.target.lattice([vec![0.5], along]).map_err(|missing| {
+                let [before, behind] = start.beyond;
+                let why = format!(
+                    "lines of contact slant: the pass begins {before:.3} of the strip's length before it and ends {behind:.3} behind"
+                );
+                let way = "mill a narrower strip, or let `side` and `along` change their coordinates".to_string();
+                NotDone { details: [missing.details.clone(), vec![why, way]].concat(), ..missing }
+            })?;
             let series = PoseSeries::through(&lattice.frames.iter().map(line_of).collect::<Vec<NormalLine>>());
             let off = series.tail();
             found = Some(series);

@@ -59,7 +59,7 @@ impl MillResult {
         for kept in &self.clearances {
             let (least, ClearanceKept { surface, body, place, .. }) = (fixed(kept.least, 4), kept);
             facts.push(("clear", format!("{body} comes as near as {least} mm to {surface}, at {place}")));
-            if let Some(proven) = kept.proven.as_ref().filter(|proven| proven.open == 0) {
+            if let Some(proven) = kept.proven.as_ref().filter(|proven| proven.proven == proven.blocks) {
                 let blocks = units::counted(proven.blocks, "block");
                 let limit = fixed(proven.limit, 4);
                 facts.push((
