@@ -55,14 +55,6 @@ impl Arrangement {
         [z, rho]
     }
 
-    /// The components of a vector at a point in the section of the outline.
-    pub fn in_section(self, [x, y, _]: [f64; 3], [along_x, along_y, along_z]: [f64; 3]) -> [f64; 2] {
-        match self {
-            Arrangement::Round => [along_z, (x * along_x + y * along_y) / x.hypot(y)],
-            Arrangement::Straight { .. } => [along_z, along_x],
-        }
-    }
-
     /// A point moved on along the spaces.
     pub fn moved(self, [x, y, z]: [f64; 3], by: f64) -> [f64; 3] {
         match self {

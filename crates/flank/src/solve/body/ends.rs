@@ -33,12 +33,9 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let between = |from: usize, to: usize| {
         (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()
     };
+    let off = |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0])).fold(f64::INFINITY, f64::min);
     let (there, back) = (between(a, b), between(b, a));
-    let faced = |side: &[usize]| {
-        let least = |a: &usize, b: &usize| nearest(&segments[*a], both[0]).total_cmp(&nearest(&segments[*b], both[0]));
-        side.iter().min_by(|a, b| least(a, b)).map_or(f64::NEG_INFINITY, |k| facing(&segments[*k], both[0]))
-    };
-    let (begin, tip, end) = if faced(&there) >= faced(&back) { (a, there, b) } else { (b, back, a) };
+    let (begin, tip, end) = if off(&there) <= off(&back) { (a, there, b) } else { (b, back, a) };
     let [tip] = tip[..] else {
         let names: Vec<String> = tip.iter().map(|k| format!("`{}`", segments[*k].name)).collect();
         return Err(format!(
@@ -51,20 +48,6 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
         .into());
     };
     Ok(Blank { outline, ends: [begin, tip, end] })
-}
-
-/// How much the ground of a space faces a segment: the sum of the cosines between its normals, which point out of the material, and the ways
-/// there. It faces the tip, however near the rest of the blank is.
-fn facing(segment: &OutlineSegment, piece: &Piece<'_, '_>) -> f64 {
-    let arrangement = piece.arrangement;
-    let cosine = |point: &SurfacePoint| {
-        let [z, rho] = arrangement.section(point.position);
-        let [near_z, near_rho] = segment.nearest([z, rho]);
-        let [by_z, by_rho] = arrangement.in_section(point.position, point.normal);
-        let way = (near_z - z).hypot(near_rho - rho);
-        if way > 0.0 { (by_z * (near_z - z) + by_rho * (near_rho - rho)) / way } else { 0.0 }
-    };
-    piece.known.iter().map(cosine).sum()
 }
 
 /// How near the known points of a surface come to a segment, mm.
