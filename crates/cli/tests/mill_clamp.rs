@@ -133,10 +133,10 @@ fn fixtures_are_kept_clear_of() {
     let lowest = lines
         .map(|line| {
             let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
-            // the centre of the ball, less its radius; the holder's lower edge
+            // the centre of the ball, less its radius; the lower edge of the holder's lower end, which may be either
             let (tip, axis) = (numbers[tip], numbers[axis]);
             let ball = tip + axis - 1.0;
-            let holder = tip + 20.0 * axis - 8.0 * (1.0 - axis * axis).sqrt();
+            let holder = tip + (20.0 * axis).min(60.0 * axis) - 8.0 * (1.0 - axis * axis).sqrt();
             60.0 + ball.min(holder)
         })
         .fold(f64::INFINITY, f64::min);

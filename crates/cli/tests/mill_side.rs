@@ -8,9 +8,10 @@ use std::path::Path;
 use serde_json::Value;
 use support::{flank, folder, text, written};
 
-const GEAR: [&str; 6] = [
+const GEAR: [&str; 7] = [
     "functions/hobbing",
     "machines/hobbing_6axis",
+    "tools/involute",
     "tools/hob_zi",
     "hobbing/helical_gear",
     "machines/five_axis_table_table",

@@ -8,7 +8,7 @@ use std::time::{Duration, SystemTime};
 use flank::{Disk, Project, analyse};
 
 /// How often the files are looked at.
-const EVERY: Duration = Duration::from_millis(20);
+const EVERY: Duration = Duration::from_millis(15);
 
 /// What the system says of a file: when it was written, and its size; nothing of one that is not there.
 type Stamp = Option<(SystemTime, u64)>;
@@ -27,7 +27,22 @@ pub fn follow(file: &Path, mut show: impl FnMut(Project)) {
         while read.iter().all(|(path, stamp)| stamped(path).1 == *stamp) {
             std::thread::sleep(EVERY);
         }
+        settle(&read);
         watched = read.into_keys().collect();
+    }
+}
+
+/// Waits until nothing more is written: a save may empty a file before it fills it.
+fn settle(read: &BTreeMap<PathBuf, Stamp>) {
+    let stamps = || read.keys().map(|path| stamped(path).1).collect::<Vec<Stamp>>();
+    let mut before = stamps();
+    loop {
+        std::thread::sleep(EVERY);
+        let now = stamps();
+        if now == before {
+            return;
+        }
+        before = now;
     }
 }
 

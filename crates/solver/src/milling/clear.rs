@@ -144,7 +144,7 @@ mod tests {
         let (obstacle, body, _) = case(43.0);
         let still = PoseSeries::sampled(3, |_| [0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
         let proof = ClearProof::new(&obstacle, &body);
-        assert_eq!(proof.along(&still, 2.99, 100_000), Clear::Proven);
-        assert!(matches!(proof.along(&still, 3.01, 100_000), Clear::Missed { .. }));
+        assert_eq!(proof.along(&still, 2.99, 2_000_000), Clear::Proven);
+        assert!(matches!(proof.along(&still, 3.01, 2_000_000), Clear::Missed { .. }));
     }
 }
