@@ -109,7 +109,7 @@ fn clearance_20000(bencher: Bencher) {
     let obstacle = Obstacle::new(PoseField::through(convex.iter().map(point).collect(), counts));
     let body = ToolBody {
         pieces: vec![
-            OutlinePiece::Arc { center: [0.0, 1.0], radius: 1.0, between: [0.0, 1.570_796] },
+            OutlinePiece::Arc { center: [0.0, 1.0], radius: 1.0, between: [0.0, std::f64::consts::FRAC_PI_2] },
             OutlinePiece::Line { from: [1.0, 1.0], to: [1.0, 20.0] },
             OutlinePiece::Line { from: [1.0, 20.0], to: [8.0, 20.0] },
             OutlinePiece::Line { from: [8.0, 20.0], to: [8.0, 60.0] },

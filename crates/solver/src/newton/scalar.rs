@@ -1,13 +1,15 @@
 //! Damped Newton inside declared ranges.
 
 use faer::Mat;
-use faer::linalg::solvers::Svd;
+use faer::linalg::solvers::{FullPivLu, Solve, Svd};
 
 use crate::equations::solution::{Outcome, Range, Solution, verdict};
 use crate::equations::system::{Conditions, Evaluation, Linearized, System};
 use crate::equations::tolerance::{LARGEST_TOLERANCE, OF_SIZE, TOLERANCE};
 use crate::newton::elimination::Elimination;
 
+/// So many equations are eliminated here; more are left to faer.
+const FEW: usize = 4;
 /// Steps after which a start is given up.
 const MOST_STEPS: usize = 40;
 /// Halvings of a step that are tried until the residuals get smaller.
@@ -235,9 +237,9 @@ impl Newton {
         if !(0..n).all(|row| (0..n).all(|column| weighted(row, column).is_finite())) {
             return Step { by: vec![0.0; n], singular: true };
         }
-        let least = equations.eliminate(weighted).least;
+        let (least, by) = solved(equations, n, weighted);
         let singular = least.is_nan() || least <= SINGULAR_BELOW;
-        let mut by = if singular { least_squares(n, weighted) } else { equations.unknowns() };
+        let mut by = if singular { least_squares(n, weighted) } else { by };
         by.iter_mut().zip(ranges).for_each(|(step, range)| *step *= range.width());
         Step { by, singular }
     }
@@ -246,9 +248,21 @@ impl Newton {
 /// J⁻¹ b at the point of the last evaluation; not finite where J has no inverse.
 pub(crate) fn inverse_times(evaluation: &Evaluation<'_>, right: &[f64]) -> Vec<f64> {
     let n = right.len();
-    let mut equations = Elimination::new(n);
-    equations.eliminate(|row, column| if column == n { right[row] } else { evaluation.jacobian(row, column) });
-    equations.unknowns()
+    let entry = |row: usize, column: usize| if column == n { right[row] } else { evaluation.jacobian(row, column) };
+    solved(&mut Elimination::new(n), n, entry).1
+}
+
+/// The size of the smallest pivot, and the unknowns of equations given by row and column, behind the last column the right side; not
+/// finite where there is no inverse.
+fn solved(few: &mut Elimination, n: usize, entry: impl Fn(usize, usize) -> f64) -> (f64, Vec<f64>) {
+    if n <= FEW {
+        let least = few.eliminate(entry).least;
+        return (least, few.unknowns());
+    }
+    let lu = FullPivLu::new(Mat::from_fn(n, n, &entry).as_ref());
+    let least = (0..n).map(|k| lu.U()[(k, k)].abs()).fold(f64::INFINITY, f64::min);
+    let solution = lu.solve(Mat::from_fn(n, 1, |row, _| entry(row, n)));
+    (least, (0..n).map(|k| solution[(k, 0)]).collect())
 }
 
 /// The shortest vector that solves J x = b as well as possible, given J and behind it b by row and column.
