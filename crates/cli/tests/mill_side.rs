@@ -139,7 +139,7 @@ fn what_one_pass_does_not_cover_is_told() {
         (gear(ball, STRIP), &["cutter.cutting has no straight side", "say `passes`"]),
         (
             gear(CYLINDER, other),
-            &["the side of cutter.cutting would lie along its own way on upper_flank", "let the side lie along z"],
+            &["mill goes beyond the travel of A", "clamp the work elsewhere"],
         ),
     ];
     for (spec, parts) in cases {
