@@ -137,10 +137,7 @@ fn what_one_pass_does_not_cover_is_told() {
             &["cutter.cutting has a side of 8.500 mm, and would touch upper_flank along", "longer side"],
         ),
         (gear(ball, STRIP), &["cutter.cutting has no straight side", "say `passes`"]),
-        (
-            gear(CYLINDER, other),
-            &["mill goes beyond the travel of A", "clamp the work elsewhere"],
-        ),
+        (gear(CYLINDER, other), &["mill goes beyond the travel of A", "clamp the work elsewhere"]),
     ];
     for (spec, parts) in cases {
         let spec = written(&out, "milled.chain", &spec);
