@@ -67,7 +67,7 @@ fn say(to: &mut PipeWriter, body: &[u8]) {
 /// Waits for the answer to a message, if it is a request.
 fn hear(answers: &Receiver<Value>, to: &Value) {
     let (Some(id), Some(_)) = (to.get("id"), to.get("method").and_then(Value::as_str)) else { return };
-    if !id.is_string() && !id.as_i64().is_some_and(|number| i32::try_from(number).is_ok()) {
+    if !id.is_string() && id.as_i64().is_none_or(|number| i32::try_from(number).is_err()) {
         return;
     }
     loop {
