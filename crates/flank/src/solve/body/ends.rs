@@ -33,9 +33,9 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let between = |from: usize, to: usize| {
         (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()
     };
-    let off = |side: &[usize]| side.iter().map(|k| nearest(&segments[*k], &pieces[0])).fold(f64::INFINITY, f64::min);
     let (there, back) = (between(a, b), between(b, a));
-    let (begin, tip, end) = if off(&there) <= off(&back) { (a, there, b) } else { (b, back, a) };
+    let is_there = openness(&there, segments, pieces) >= openness(&back, segments, pieces);
+    let (begin, tip, end) = if is_there { (a, there, b) } else { (b, back, a) };
     let [tip] = tip[..] else {
         let names: Vec<String> = tip.iter().map(|k| format!("`{}`", segments[*k].name)).collect();
         return Err(format!(
@@ -48,6 +48,35 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
         .into());
     };
     Ok(Blank { outline, ends: [begin, tip, end] })
+}
+
+/// How much speaks for it that spaces leave the blank by the segments of a side. The surfaces of a space rise from its ground to the tip: the
+/// side that they rise to, however near the rest of the blank is. Where no ground lies between the flanks, the side that these are nearer to.
+fn openness(side: &[usize], segments: &[OutlineSegment], pieces: &[Piece<'_, '_>]) -> f64 {
+    let nearest_of = |piece: &Piece<'_, '_>| {
+        let off = side.iter().map(|k| (nearest(&segments[*k], piece), *k));
+        off.min_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let ground = &pieces[pieces.len() / 2];
+    match (pieces.len() > 2).then(|| nearest_of(ground)) {
+        Some(Some((_, segment))) => rise(&segments[segment], &pieces[0], ground),
+        _ => nearest_of(&pieces[0]).map_or(f64::NEG_INFINITY, |(off, _)| -off),
+    }
+}
+
+/// How much nearer to a segment the known points of a surface lie than the points of the ground beside them, in the mean, mm.
+fn rise(segment: &OutlineSegment, piece: &Piece<'_, '_>, ground: &Piece<'_, '_>) -> f64 {
+    let places = |piece: &Piece<'_, '_>| {
+        piece.known.iter().map(|point| piece.arrangement.section(point.position)).collect::<Vec<[f64; 2]>>()
+    };
+    let apart = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let off = |place: &[f64; 2]| apart(place, &segment.nearest(*place));
+    let (above, below) = (places(piece), places(ground));
+    let risen = |place: &[f64; 2]| {
+        let beside = below.iter().min_by(|a, b| apart(place, a).total_cmp(&apart(place, b)));
+        beside.map_or(0.0, |beside| off(beside) - off(place))
+    };
+    above.iter().map(risen).sum::<f64>() / above.len() as f64
 }
 
 /// How near the known points of a surface come to a segment, mm.
