@@ -14,16 +14,18 @@ const fail = (text) => {
 };
 
 const spec = readFileSync(`${folder}/work/lathe.chain`, "utf8");
-mkdirSync(`${folder}/data/User`, { recursive: true });
+for (const place of ["User", "Machine"]) mkdirSync(`${folder}/data/${place}`, { recursive: true });
+// a setting of the machine that the server runs on: among those of the user it is heeded only until the workbench knows the server
+writeFileSync(`${folder}/data/Machine/settings.json`, JSON.stringify({ "flank.path": program }));
 writeFileSync(`${folder}/data/User/settings.json`, JSON.stringify({
-    "flank.path": program, "workbench.startupEditor": "none", "security.workspace.trust.enabled": false, "telemetry.telemetryLevel": "off",
+    "workbench.startupEditor": "none", "security.workspace.trust.enabled": false, "telemetry.telemetryLevel": "off",
     "editor.minimap.enabled": false, "chat.commandCenter.enabled": false,
 }));
 const node = spawn(process.execPath, [
     `${server}/out/node/entry.js`, "--auth", "none", "--bind-addr", `127.0.0.1:${port}`, "--disable-telemetry", "--disable-update-check",
     "--disable-workspace-trust", "--user-data-dir", `${folder}/data`, "--extensions-dir", `${folder}/extensions`, "--config", `${folder}/none.yaml`,
 ], { stdio: ["ignore", "pipe", "inherit"] });
-let browser;
+let browser, page;
 try {
     await new Promise((resolve, reject) => {
         const late = setTimeout(() => reject(new Error("code-server does not start")), 60_000);
@@ -39,7 +41,7 @@ try {
         args: ["--headless", "--no-sandbox", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update",
             "--disable-sync", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
     });
-    const page = await browser.newPage({ viewport: { width: 1400, height: 800 } });
+    page = await browser.newPage({ viewport: { width: 1400, height: 800 } });
     page.setDefaultTimeout(60_000);
     await page.goto(`http://127.0.0.1:${port}/?folder=${encodeURIComponent(`${folder}/work`)}`);
     await page.waitForSelector(".monaco-workbench");
@@ -81,6 +83,12 @@ try {
     say(`the page shows ${await shown.evaluate(() => document.getElementById("tally").textContent)}`);
     await page.screenshot({ path: `${folder}/page.png` });
     if (readFileSync(`${folder}/work/lathe.chain`, "utf8") !== spec) fail("the spec was written");
+} catch (error) {
+    // what the editor tells and shows at that moment
+    const told = await page?.locator(".notification-toast").allInnerTexts().catch(() => []);
+    say(`the editor tells: ${told?.join(" | ").replace(/\s+/g, " ") || "nothing"}`);
+    await page?.screenshot({ path: `${folder}/failed.png` }).catch(() => {});
+    throw error;
 } finally {
     await browser?.close();
     node.kill();
