@@ -62,7 +62,9 @@ pub(super) fn statement_end(scan: &Scan, from: usize) -> usize {
             "(" | "[" => brackets += 1,
             ")" | "]" => brackets = brackets.saturating_sub(1),
             next => {
-                let inside = braces > 0 && !(sample && scan.indent(index).is_some());
+                // a sample may lack its `}`, and its own lines may begin with `require`
+                let beside = sample && scan.indent(index).is_some() && !is_right_of(scan, index, from);
+                let inside = braces > 0 && !beside;
                 let label = brackets > 0 && matches!(scan.say(index + 1), ":" | "," | ")" | ".");
                 if !next.is_empty() && !inside && !label && begins(scan, index) {
                     return index;

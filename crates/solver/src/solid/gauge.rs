@@ -14,6 +14,8 @@ const MOST_STEPS: usize = 30;
 /// points have of the surfaces' normals.
 const LAST_STEP: f64 = 1e-9;
 const TOUCHES: f64 = 1e-6;
+/// A circle this near to the end of a flank goes through it, mm: above what charts are off, so that both flanks reach the tip.
+const ENDS: f64 = 1e-7;
 /// Step of the differences that Newton's method takes for slopes, in shares.
 const STEP: f64 = 1e-6;
 /// The tip of a face gear is this flat: its slope against a plane across the axis.
@@ -122,8 +124,9 @@ impl Body {
     pub fn thickness(&self, depth: f64) -> Option<Thickness> {
         let place = |k: usize| Some(self.arrangement.place(self.charts()[k].at([self.on_flank(k, depth)?, 0.5])));
         // flank, or chamfer beside it
+        let count = self.charts().len();
         let ([z, rho, low], [_, _, high]) =
-            ((0..self.charts().len()).find_map(place)?, (0..self.charts().len()).rev().find_map(place)?);
+            ((0..count.div_ceil(2)).find_map(place)?, (count / 2..count).rev().find_map(place)?);
         let way = self.pitch() - (self.arrangement.near(high, low + 0.5 * self.pitch()) - low);
         let arc = self.arrangement.arc(rho) * way;
         let (chord, rise) = match self.arrangement {
@@ -140,8 +143,8 @@ impl Body {
     fn on_flank(&self, k: usize, wanted: f64) -> Option<f64> {
         let at = |share: f64| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))) - wanted;
         let (mut low, mut high) = (0.0, 1.0);
-        if at(low) == 0.0 {
-            return Some(low);
+        if let Some(end) = [low, high].into_iter().find(|end| at(*end).abs() <= ENDS) {
+            return Some(end);
         }
         if at(low) * at(high) > 0.0 {
             return None;
