@@ -37,10 +37,13 @@ impl Layout {
         let charts = &fineness.charts;
         let last: usize = charts.iter().sum();
         let middle = last / 2;
-        let first = charts[0].min(charts[charts.len() - 1]);
+        let of_both = |k: usize| charts[k].min(charts[charts.len() - 1 - k]);
+        // fillets lie beside the ground, below the flanks and what is above these; three surfaces have none
+        let fillet = ((charts.len() - 1) / 2).saturating_sub(1).max(1);
+        let flanks: usize = (0..fillet).map(of_both).sum();
         // where a fillet has turned by about half: there the cells of both blocks have the best corners
-        let beyond = if charts.len() > 2 { charts[1].min(charts[charts.len() - 2]) / 2 } else { 0 };
-        let depth = (first + beyond).min(middle).min(last - middle).max(1);
+        let beyond = if charts.len() > 3 { of_both(fillet) / 2 } else { 0 };
+        let depth = (flanks + beyond).min(middle).min(last - middle).max(1);
         Layout { last, middle, depth, tooth: fineness.tooth, rim: fineness.rim }
     }
 
