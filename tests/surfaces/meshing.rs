@@ -250,6 +250,12 @@ fn helical_gears() {
         .check(3);
 }
 
+#[test]
+fn a_pinion_in_a_face_gear() {
+    Pair { spec: "specs/bodies/face_gear_pair_body.chain", solids: ["pinion", "gear"], teeth: [23, 108], spacing: 0.12 }
+        .check(3);
+}
+
 /// The same with the pinion's space turned inside out by a mirror: what a kernel calls valid.
 #[test]
 fn spiral_bevel_gears_and_their_mirror_image() {
