@@ -551,6 +551,41 @@ fn a_root_line_is_kept() {
     assert!((free_angle - nominal_angle).abs() > 1e-2, "{free_angle}");
 }
 
+/// Both flanks with the thickness free, and the root line or the thickness at the mean point kept: what is kept is turned with the first flank,
+/// and by how much thicker the tooth was measured changes nothing of the correction.
+#[test]
+fn what_is_kept_stays_where_the_thickness_is_free() {
+    const FURTHER: f64 = 2e-3;
+    let file = gauged("fit_keep_free");
+    let thicker = rewritten(&file, "further.csv", |place, [x, y, z], _| {
+        let (sine, cosine) = f64::sin_cos(FURTHER);
+        plain(place, [x * cosine - y * sine, x * sine + y * cosine, z])
+    });
+    let varied = "radial_distance,machine_root_angle,work_offset,sliding_base,machine_center_to_crossing_point,ratio_of_roll";
+    let and = format!("convex={}", path(&file));
+    let corrected = |measured: &str, more: &[&str]| {
+        let asked = [PINION, "concave", "--measured", measured, "--and", &and, "--vary", varied, "--within", "20um"];
+        fit(0, &[&asked[..], &["--thickness", "free"], more].concat()).0
+    };
+    let new = |told: &Value| -> Vec<f64> {
+        let settings = told["correction"]["settings"].as_array().expect("settings");
+        settings.iter().map(|of| number(&of["new"])).collect()
+    };
+    for kept in ["root=line", "root"] {
+        let [own, other] = [path(&file), &thicker].map(|measured| corrected(measured, &["--keep", kept]));
+        for told in [&own, &other] {
+            assert!(number(&told["kept"][0]["off_um"]) < 1e-6, "{kept}: {}", told["kept"]);
+        }
+        for (of, with) in new(&own).into_iter().zip(new(&other)) {
+            assert!((of - with).abs() < 1e-8, "{kept}: {of} {with}");
+        }
+        assert!(number(&other["thicker_mm"]).abs() > 0.05, "{other}");
+        // the correction is another one than without it
+        let free = corrected(path(&file), &[]);
+        assert!(new(&own).iter().zip(new(&free)).any(|(of, with)| (of - with).abs() > 1e-3), "{kept}");
+    }
+}
+
 /// A table of deviations is a wish as a parabola is: of the same numbers the same settings.
 #[test]
 fn a_wished_table_is_met() {
