@@ -475,6 +475,16 @@ fn a_wanted_ease_off_is_reached_where_settings_make_it() {
     assert!((number(&reached["slopes_um"][0]) - 20.0).abs() < 2.0, "{reached}");
 }
 
+/// The inside blades do not touch this flank: nothing is changed for a wish, and why is said.
+#[test]
+fn a_wish_that_no_setting_moves_is_told() {
+    let wish = ["--ease-off", "bias: 20", "--from", "conjugate.concave", "--vary", "c.inside_point_radius"];
+    let (told, stderr) = fit(3, &[&[EASE_OFF, "basic.concave"][..], &wish].concat());
+    assert!(names(&told["correction"]["settings"]).is_empty(), "{told}");
+    assert!(stderr.contains("`c.inside_point_radius` does not move concave"), "{stderr}");
+    assert!(stderr.contains("none is changed") && stderr.contains("not met"), "{stderr}");
+}
+
 /// The published settings lie 5 um off the parabola that they were after; these settings come nearer, none on it.
 #[test]
 fn the_published_ease_off_is_no_parabola() {
@@ -551,6 +561,42 @@ fn a_root_line_is_kept() {
     assert!((free_angle - nominal_angle).abs() > 1e-2, "{free_angle}");
 }
 
+/// Both flanks with the thickness free, and the root line or the thickness at the mean point kept: what is kept is turned with the first flank,
+/// and by how much thicker the tooth was measured changes nothing of the correction.
+#[test]
+fn what_is_kept_stays_where_the_thickness_is_free() {
+    const FURTHER: f64 = 2e-3;
+    let file = gauged("fit_keep_free");
+    let thicker = rewritten(&file, "further.csv", |place, [x, y, z], _| {
+        let (sine, cosine) = f64::sin_cos(FURTHER);
+        plain(place, [x * cosine - y * sine, x * sine + y * cosine, z])
+    });
+    let varied =
+        "radial_distance,machine_root_angle,work_offset,sliding_base,machine_center_to_crossing_point,ratio_of_roll";
+    let and = format!("convex={}", path(&file));
+    let corrected = |measured: &str, more: &[&str]| {
+        let asked = [PINION, "concave", "--measured", measured, "--and", &and, "--vary", varied, "--within", "20um"];
+        fit(0, &[&asked[..], &["--thickness", "free"], more].concat()).0
+    };
+    let new = |told: &Value| -> Vec<f64> {
+        let settings = told["correction"]["settings"].as_array().expect("settings");
+        settings.iter().map(|of| number(&of["new"])).collect()
+    };
+    for kept in ["root=line", "root"] {
+        let [own, other] = [path(&file), &thicker].map(|measured| corrected(measured, &["--keep", kept]));
+        for told in [&own, &other] {
+            assert!(number(&told["kept"][0]["off_um"]) < 1e-6, "{kept}: {}", told["kept"]);
+        }
+        for (of, with) in new(&own).into_iter().zip(new(&other)) {
+            assert!((of - with).abs() < 1e-8, "{kept}: {of} {with}");
+        }
+        assert!(number(&other["thicker_mm"]).abs() > 0.05, "{other}");
+        // the correction is another one than without it
+        let free = corrected(path(&file), &[]);
+        assert!(new(&own).iter().zip(new(&free)).any(|(of, with)| (of - with).abs() > 1e-3), "{kept}");
+    }
+}
+
 /// A table of deviations is a wish as a parabola is: of the same numbers the same settings.
 #[test]
 fn a_wished_table_is_met() {
@@ -611,7 +657,12 @@ fn the_published_ease_off_is_met_from_the_basic_settings() {
             }
         }
         job plain = curved()
-        job published = pinion()\n",
+        job published extends pinion {
+            sample concave {
+                toe_root: toe_root_1(), heel_root: heel_root_1(), toe_tip: toe_tip_1(), heel_tip: heel_tip_1()
+                profilewise: 0.3 .. 1 by 11, lengthwise: 0 .. 1 by 15
+            }
+        }\n",
     );
     let varied = "radial_distance,cradle_angle,work_offset,machine_center_to_crossing_point,ratio_of_roll,modified_roll_2c,modified_roll_6d,\
                   outside_point_radius,blade_angle,blade_curvature";
@@ -628,4 +679,9 @@ fn the_published_ease_off_is_met_from_the_basic_settings() {
     // neither lies on the parabola
     let left = number(&told["predicted_um"]);
     assert!(left > 3.0 && left < 6.0, "{left}");
+    // the published flank itself, from the basic settings: with all directions that show they make it
+    let all = format!("{varied},sliding_base");
+    let asked = [&spec, "curved.concave", "--from", "published.concave", "--ease-off", "bias: 0", "--vary", &all];
+    let (told, _) = fit(0, &[&asked[..], &["--resolution", "0.001um"]].concat());
+    assert!(number(&told["before_um"]) > 10.0 && number(&told["predicted_um"]) < 1e-3, "{}", told["predicted_um"]);
 }

@@ -114,6 +114,8 @@ pub(crate) struct Placed<'j, 'g> {
     sample: &'j Sample<'g>,
     ends: FlankEnds,
     margins: [f64; 2],
+    /// Unknowns of the point in the middle, where that tells the branch.
+    start: Option<Vec<f64>>,
     session: Session<'j>,
 }
 
@@ -145,7 +147,12 @@ impl<'j, 'g> Placed<'j, 'g> {
         let shares = spaced((0.0, 1.0), TRIAL);
         let trial = lattice(sample, false, [&shares, &shares]);
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
-        let found = solve::points(job, surface, &trial, wanted(session));
+        // what is cut away lies between the same ends
+        let mut found = solve::untrimmed(job, surface, &trial, session);
+        let start = found.start().map(<[f64]>::to_vec);
+        if start.is_none() {
+            found = solve::points(job, surface, &trial, wanted(session));
+        }
         if let Some(branches) = found.ambiguous(surface, &trial) {
             return Err(Failure::NotDone(vec![branches]));
         }
@@ -154,7 +161,7 @@ impl<'j, 'g> Placed<'j, 'g> {
             "the grid of `{name}` does not tell root and tip from the length of the tooth; a sample between the corners of the blank \
              does: `toe_root: [z, rho]`, …"
         ))?;
-        Ok(Placed { job, surface, sample, ends, margins, session })
+        Ok(Placed { job, surface, sample, ends, margins, start, session })
     }
 
     /// Points at shares from root to tip and along the tooth.
@@ -184,7 +191,11 @@ impl<'j, 'g> Placed<'j, 'g> {
     /// If the work is cancelled.
     pub(crate) fn solved(&self, sample: &Sample<'g>) -> Result<Vec<SurfacePoint>, Failure> {
         let _working = self.session.begin(format!("solving {}", self.surface.name))?;
-        Ok(solve::points(self.job, self.surface, sample, wanted(self.session)).points)
+        // of other numbers of points none lies in the middle
+        let start = self.start.as_deref().filter(|_| sample.counts.iter().all(|count| count % 2 == 1));
+        let known =
+            start.and_then(|start| solve::points_of_branch(self.job, self.surface, (sample, start), self.session));
+        Ok(known.unwrap_or_else(|| solve::points(self.job, self.surface, sample, wanted(self.session)).points))
     }
 
     fn part(&self, counts: [usize; 2]) -> Result<Patch, Failure> {

@@ -119,6 +119,15 @@ pub(crate) struct Found<'j, 'g> {
 }
 
 impl<'g> Found<'_, 'g> {
+    /// Unknowns of the point in the middle, where nothing but the branch through it is in question: all points of the sample lie on it, and there
+    /// is no other one.
+    pub(crate) fn start(&self) -> Option<&[f64]> {
+        let is_whole = self.points.iter().all(|point| point.outcome == Outcome::Solved);
+        let is_alone = self.effort.branches.len() == 1 && self.effort.elsewhere.is_empty();
+        let middle = self.points.get(self.points.len() / 2)?;
+        (is_whole && is_alone).then_some(&middle.unknowns[..])
+    }
+
     /// The branches that qualify where nothing chooses between several, with what would select each.
     pub(crate) fn ambiguous(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<NotDone> {
         let is_ambiguous = self.points.iter().any(|point| point.outcome == Outcome::Ambiguous);
@@ -154,6 +163,41 @@ pub(crate) fn points<'j, 'g>(
     let FoundPoints { points, effort, positions } = found;
     let positions = positions.expect("what is judged has them");
     Found { problem, points, effort, trims, positions }
+}
+
+/// The points of a sample as its equations have them alone: what is cut away is there, too.
+pub(crate) fn untrimmed<'j, 'g>(
+    job: &'j Job<'g>,
+    surface: &'j GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+    session: Session<'_>,
+) -> Found<'j, 'g> {
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = problem(job, surface, coordinates, session);
+    let found = session.sample((job, surface), sample, SOLVED, || as_solved(&problem, sample));
+    let positions = Positions::Unseen("all other positions");
+    Found { problem, points: found.points, effort: found.effort, trims: Vec::new(), positions }
+}
+
+/// The points of a part of a sample whose branch is known by the unknowns of its point in the middle: as [`points`] has them, without another search for
+/// it. `None` where not all are reached so.
+pub(crate) fn points_of_branch<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    (sample, start): (&Sample<'g>, &[f64]),
+    session: Session<'_>,
+) -> Option<Vec<SurfacePoint>> {
+    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let problem = problem(job, surface, coordinates, session);
+    let (points, effort) = problem.solve_points(&sample.targets(), sample.counts, Some(start), None);
+    let mut points: Vec<SurfacePoint> = (0..points.len()).map(|k| points.point(k)).collect();
+    if points.iter().any(|point| point.outcome != Outcome::Solved) {
+        return None;
+    }
+    for (number, &by) in surface.trimmed_by.iter().enumerate() {
+        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, session));
+    }
+    Some(judged((job, surface), sample, FoundPoints { points, effort, positions: None }).points)
 }
 
 /// What is asked of samples: their points as the equations have them, and without those that are cut away.

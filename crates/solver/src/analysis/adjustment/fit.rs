@@ -88,13 +88,18 @@ impl SettingsAdjustment<'_> {
             given_up: None,
         };
         let mut near: Vec<Vec<NearFoot>> = self.surfaces().map(|wanted| wanted.near.clone()).collect();
+        // with the values that they are of
+        let mut last = (Vec::new(), Vec::new());
         let fit = problem.solve(|values| {
             let feet = self.feet(values, &near)?;
             near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
             let (wanted, kept) = feet.split_at(self.wanted.len());
-            Some(linearized([wanted, kept], values.len(), self.shapes.as_ref()))
+            let told = linearized([wanted, kept], values.len(), self.shapes.as_ref());
+            last = (values.to_vec(), feet);
+            Some(told)
         })?;
-        let mut feet = self.feet(&fit.values, &near)?;
+        let (values, feet) = last;
+        let mut feet = if values == fit.values { feet } else { self.feet(&fit.values, &near)? };
         feet.truncate(self.wanted.len());
         Some(AdjustedSurfaces { fit, feet })
     }
@@ -124,9 +129,10 @@ fn linearized([wanted, kept]: [&[Vec<Foot>]; 2], unknowns: usize, shapes: Option
         // what is kept is turned with all
         own.into_iter().chain(in_order(kept).map(|(_, foot)| of((0, foot)))).collect()
     };
-    let columns: Vec<Vec<f64>> = (0..unknowns).map(|k| all(&|foot| slope(foot, k))).collect();
     let residuals = all(&|(_, foot)| foot.distance);
-    Linearized { jacobian: Mat::from_fn(residuals.len(), unknowns, |row, k| columns[k][row]), residuals }
+    let mut jacobian = Mat::zeros(residuals.len(), unknowns);
+    (0..unknowns).for_each(|k| jacobian.col_as_slice_mut(k).copy_from_slice(&all(&|foot| slope(foot, k))));
+    Linearized { residuals, jacobian }
 }
 
 /// Each with the place of its surface.

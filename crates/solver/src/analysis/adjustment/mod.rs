@@ -33,6 +33,21 @@ pub struct FootSearch {
     settings: usize,
 }
 
+/// What one tile after the other is solved with.
+struct Evaluators<'s> {
+    newton: LaneNewton<'s>,
+    at_foot: LaneEvaluator<'s>,
+}
+
+impl<'s> Evaluators<'s> {
+    fn new(search: &'s FootSearch) -> Evaluators<'s> {
+        Evaluators {
+            newton: LaneNewton::new(&search.foot, &search.ranges),
+            at_foot: LaneEvaluator::new(&search.at_foot, search.foot.instructions()),
+        }
+    }
+}
+
 /// Where a foot is looked for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NearFoot {
@@ -119,12 +134,17 @@ impl FootSearch {
     pub fn feet(&self, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
         assert_eq!(points.len(), near.len(), "a start for each point");
         let tiles = points.par_chunks(LANES).zip(near.par_chunks(LANES));
-        tiles.flat_map_iter(|(points, near)| self.tile(points, near)).collect()
+        let found: Vec<Vec<Option<Foot>>> = tiles
+            .map_init(|| Evaluators::new(self), |evaluators, (points, near)| self.tile(evaluators, points, near))
+            .collect();
+        found.into_iter().flatten().collect()
     }
 
     /// As many points as there are lanes at the most, at once; what needs care is solved alone.
-    fn tile(&self, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
-        let mut newton = LaneNewton::new(&self.foot, &self.ranges);
+    fn tile(&self, evaluators: &mut Evaluators<'_>, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
+        let Evaluators { newton, at_foot } = evaluators;
+        // nothing is known of it at these starts
+        *newton.determinant() = [f64::NAN; LANES];
         for (lane, (point, near)) in points.iter().zip(near).enumerate() {
             newton.put(lane, near.unknowns.iter().copied().chain([near.distance]), point);
         }
@@ -137,7 +157,7 @@ impl FootSearch {
                 false => self.root(*point, near),
             });
         }
-        self.placed(roots)
+        self.placed(at_foot, roots)
     }
 
     /// Unknowns and distance.
@@ -147,8 +167,7 @@ impl FootSearch {
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
     }
 
-    fn placed(&self, roots: Vec<Option<Vec<f64>>>) -> Vec<Option<Foot>> {
-        let mut evaluator = LaneEvaluator::new(&self.at_foot, self.foot.instructions());
+    fn placed(&self, evaluator: &mut LaneEvaluator<'_>, roots: Vec<Option<Vec<f64>>>) -> Vec<Option<Foot>> {
         let size = self.ranges.len() - 1;
         for (lane, root) in roots.iter().enumerate() {
             // where there is none nothing is read

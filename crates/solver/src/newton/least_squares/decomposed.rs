@@ -3,6 +3,7 @@
 use faer::Mat;
 use faer::linalg::solvers::Svd;
 
+use super::thin::ThinSvd;
 use super::{State, UNSEEN};
 
 /// Residuals that are to be zero, with their derivatives by the scales of the unknowns.
@@ -106,11 +107,8 @@ impl Decomposed {
         let jacobian = Mat::from_fn(rows.max(free.len()), free.len(), slope);
         // without anything to keep, the directions are the unknowns themselves
         let jacobian = if kept.sizes.is_empty() { jacobian } else { &jacobian * &keeping };
-        // all is finite, so that the values converge
-        let Ok(svd) = Svd::new_thin(jacobian.as_ref()) else { return none(kept) };
-        let sizes: Vec<f64> = svd.S().column_vector().iter().copied().collect();
-        let mut right = if kept.sizes.is_empty() { svd.V().to_owned() } else { &keeping * svd.V() };
-        let mut left = svd.U().to_owned();
+        let ThinSvd { mut left, sizes, right } = ThinSvd::new(&jacobian);
+        let mut right = if kept.sizes.is_empty() { right } else { &keeping * &right };
         // a direction and its opposite are the same: the one whose largest share is positive is told
         for k in 0..sizes.len() {
             let largest = right.col(k).iter().fold(0.0, |most: f64, x| if x.abs() > most.abs() { *x } else { most });
