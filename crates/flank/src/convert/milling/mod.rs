@@ -22,6 +22,7 @@ mod verify;
 use std::time::Instant;
 
 use flank_chain_dsl::{Job, Milling, PassSpacing};
+use flank_export::fixed;
 use flank_expr::Graph;
 use flank_solver::{Bending, PoseSeries, SweptCutter};
 use rayon::prelude::*;
@@ -315,6 +316,15 @@ fn describe(
     result.blocks = Some(plan.blocks.map(|ends| left_at(target, ends)));
     result.polynomials_off = Some(fields.off);
     result.timing.points = milled.lattice.frames.len();
+    result.remarks.extend(plan.short.map(|short| {
+        let (place, by) = (target.place(short.shares), fixed(short.height, 4));
+        let message = format!(
+            "the cut beside the passes ends at {place}, {by} mm before these: the edge of {} is round",
+            target.milling.cutter_name
+        );
+        let way = "let `along` run so much farther than what is to be milled".to_string();
+        Remark::new(RemarkKind::ShortCut, target.name(), message).with(vec![way])
+    }));
     if let Some((unknown, by)) = milled.lattice.beyond {
         let message = target.beyond(unknown, by);
         result.remarks.push(Remark::new(RemarkKind::Continued, target.name(), message));
