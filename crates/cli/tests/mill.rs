@@ -168,8 +168,22 @@ fn pictures_reports_and_pages_show_what_is_left() {
     let told: Value = serde_json::from_str(&run(&["report", &spec, "--json"])).unwrap();
     assert_eq!(told["millings"][0]["map"]["points"], 465);
     let html = text_of(&out.join("milled.report.html"));
-    for words in ["What is left, \u{b5}m, by shares of the milled part", "What the axes do", "clearance along the pass"]
-    {
+    let setup = &told["millings"][0]["setup"];
+    assert_eq!([&setup["cutter"], &setup["machine"][1]], ["ball_mill", "five_axis_table_table"], "{setup}");
+    let radius = setup["settings"].as_array().unwrap().iter().find(|one| one["name"] == "radius").expect("a radius");
+    assert_eq!((radius["value"].as_f64(), radius["unit"].as_str()), (Some(1.0), Some("mm")));
+    for words in [
+        "What is left, \u{b5}m, by shares of the milled part",
+        "What the axes do",
+        "clearance along the pass",
+        "Cutter and program",
+        "radius 1 mm, reach 20 mm, holder radius 8 mm, holder length 40 mm",
+        "9, evenly spread, one way",
+        "600 mm/min of the cutter along the surface",
+        "not said: --spindle does",
+        "none chosen: --nc of",
+        "70.000 deg",
+    ] {
         assert!(html.contains(words), "{words}");
     }
     run(&["view", &spec]);

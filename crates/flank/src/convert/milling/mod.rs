@@ -14,6 +14,7 @@ mod plan;
 mod program;
 mod proof;
 pub(crate) mod result;
+pub(crate) mod setup;
 pub(crate) mod side;
 mod target;
 mod text;
@@ -262,6 +263,7 @@ fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> Mil
         frame: target.frame().to_string(),
         cutter: target.milling.cutter_name.clone(),
         coordinates: target.milling.area.names.clone(),
+        setup: setup::MillSetup::new(job, target, request),
         passes: None,
         positions: None,
         pass_step: None,
