@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use flank::{
-    ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, ElementOrder, Failure, FieldArray, FitRequest,
+    ClampRange, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, ElementOrder, Failure, FieldArray, FitRequest,
     KeptPlace, MeasureRequest, MeshRequest, MillRequest, Monitor, Onto, PlotRequest, PointGrid, ReportRequest,
     SolidPart, SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ViewRequest, WantedEaseOff,
 };
@@ -294,6 +294,7 @@ pub(crate) fn contact(py: Python<'_>, job: &Job, options: &Bound<'_, PyDict>) ->
         sensitivity: given.or("sensitivity", false)?,
         vhj: given.or("vhj", false)?,
         certify: given.or("certify", false)?,
+        milled: given.given("milled")?,
         out: given.or("out", PathBuf::from(NOWHERE))?,
         format: given.kinds("format")?,
         no_picture: !given.or("picture", false)?,
@@ -312,6 +313,7 @@ pub(crate) fn contact(py: Python<'_>, job: &Job, options: &Bound<'_, PyDict>) ->
 #[pyfunction]
 pub(crate) fn mill(py: Python<'_>, job: &Job, options: &Bound<'_, PyDict>) -> PyResult<Vec<Answer>> {
     let given = Options(options);
+    let range = |(setting, ends): (String, [String; 2])| ClampRange { setting, ends };
     let mut request = MillRequest {
         milling: given.given("milling")?,
         out: given.or("out", PathBuf::from(NOWHERE))?,
@@ -321,12 +323,16 @@ pub(crate) fn mill(py: Python<'_>, job: &Job, options: &Bound<'_, PyDict>) -> Py
         tool_centre_control: given.or("tool_centre_control", false)?,
         spindle: given.given("spindle")?,
         verify: given.given("verify")?,
+        clamp: given.or::<Vec<_>>("clamp", Vec::new())?.into_iter().map(range).collect(),
+        certify: given.given("certify")?,
         evaluator: given.evaluator()?,
         ..MillRequest::new(job.selection())
     };
     given.put("feed", &mut request.feed)?;
     given.put("approach", &mut request.approach)?;
     given.put("spaces", &mut request.spaces)?;
+    given.put("rows", &mut request.rows)?;
+    given.put("columns", &mut request.columns)?;
     all(py, move |monitor, each| flank::mill(&request, monitor, each), no_grids)
 }
 

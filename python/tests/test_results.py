@@ -199,8 +199,27 @@ def test_bodies_and_bricks(results, tmp_path):
 def test_milling(results, tmp_path):
     milling = results["flank.mill/1"]
     assert milling["passes"] > 1 and milling["cusp"]["height_um"] > 0
-    written = milling.write(tmp_path, "csv", nc="heidenhain")
-    assert len(written) >= 2
+    written = milling.write(tmp_path, "csv", nc="heidenhain", map="json")
+    assert sorted(name.rsplit(".", 1)[-1] for name in written) == ["csv", "h", "json"]
+
+
+def test_milling_options():
+    job = flank.load("specs/bevel/milled_pinion.chain")
+    found = job.mill("finish", rows=3, columns=4, clamp={"mill.work_z": ("20 mm", "120 mm")}, certify="5 um")
+    assert (found["map"]["rows"], found["map"]["columns"], found["map"]["points"]) == (3, 4, 12)
+    (setting,) = found["clamping"]["settings"]
+    assert setting["name"] == "mill.work_z"
+    (kept,) = found["clearances"]
+    assert abs(kept["proven"]["limit"] - 0.095) < 1e-12 and kept["proven"]["proven"] == kept["proven"]["blocks"]
+    for clamp, message in [({"mill.work_z": "20 mm"}, "write two values"), ({"mill.no": ("1 mm", "2 mm")}, "mill.no")]:
+        with pytest.raises(flank.InputError, match=message):
+            job.mill("finish", clamp=clamp)
+
+
+def test_a_contact_with_a_milled_flank():
+    pair = flank.load("specs/pairs/milled_pair.chain")
+    plain, milled = pair.contact(), pair.contact(milled="finish")
+    assert plain["milled"] is None and milled["milled"]["milling"] == "finish"
 
 
 def test_pictures(job, tmp_path):

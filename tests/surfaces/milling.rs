@@ -161,14 +161,26 @@ fn flank(job: &Job<'_>, name: &str, [t, s]: [[f64; 2]; 2]) -> Vec<SurfaceFrame> 
         .collect()
 }
 
-/// The least height at which a line enters a flat cutter's cylinder, in very many poses of a pass.
+/// The least height at which a line enters a flat cutter's cylinder, in very many poses of the middle of a pass.
 fn scanned(pass: &PoseSeries, radius: f64, line: &[f64; 6]) -> f64 {
-    const POSES: usize = 100_000;
+    scanned_at::<100_000>(pass, [0.4, 0.6], (radius, line), |bottom, [enters, leaves]| {
+        (leaves > bottom).then(|| bottom.max(enters))
+    })
+}
+
+/// The least of what a line has in poses between two shares of a way, which is given the height of the bottom on it, and where the line enters and
+/// leaves the cylinder.
+fn scanned_at<const POSES: usize>(
+    way: &PoseSeries,
+    [from, to]: [f64; 2],
+    (radius, line): (f64, &[f64; 6]),
+    height: impl Fn(f64, [f64; 2]) -> Option<f64>,
+) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let [x, y, z, nx, ny, nz] = *line;
     let normal = [nx, ny, nz];
     let heights = (0..=POSES).filter_map(|k| {
-        let [tx, ty, tz, i, j, k] = pass.at(0.4 + 0.2 * k as f64 / POSES as f64);
+        let [tx, ty, tz, i, j, k] = way.at(from + (to - from) * k as f64 / POSES as f64);
         let (from, axis) = ([x - tx, y - ty, z - tz], [i, j, k]);
         let [up, slope] = [dot(from, axis), dot(normal, axis)];
         let bottom = -up / slope;
@@ -179,8 +191,7 @@ fn scanned(pass: &PoseSeries, radius: f64, line: &[f64; 6]) -> f64 {
         if root < 0.0 {
             return None;
         }
-        let [enters, leaves] = [-1.0, 1.0].map(|sign| (-b + sign * root.sqrt()) / a);
-        (leaves > bottom).then(|| bottom.max(enters))
+        height(bottom, [-1.0, 1.0].map(|sign| (-b + sign * root.sqrt()) / a))
     });
     heights.fold(f64::INFINITY, f64::min)
 }
@@ -319,6 +330,54 @@ fn the_envelope_of_each_cutter_over_both_is_the_flank() {
             }
         }
     }
+}
+
+/// The edge of a flat cutter meets a line twice on its way, with the front and with the heel: short and long ways leave the lower of both, and
+/// nothing in front of where they end.
+#[test]
+fn flat_cutters_leave_what_brute_force_finds_on_ways_of_any_length() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/pairs/bevel_19x62.chain", &[]);
+    let frames = flank(&job, "pinion_concave", [[0.45, 0.55], [0.3, 0.6]]);
+    let flat = OutlinePiece::Arc { center: [1.0, 0.0], radius: 0.0, between: [0.0, FRAC_PI_2] };
+    let cutter = Cutter { pieces: vec![flat] };
+    const POSES: usize = 4000;
+    let (mut passed, mut beyond, mut heels) = (0, 0, 0);
+    for (lead, tilt) in [(0.087f64, 0.35), (0.2, 0.0), (-0.1, 0.2), (0.02, 0.9)] {
+        let fields = Fields::new(&frames, &cutter, Lean { lead, tilt, stock: 0.0 });
+        let path = fields.cutter.pass(0.5);
+        // parts of the pass: one as long as the cutter is wide, one longer, one far shorter, and all of it
+        for [from, to] in [[0.2, 0.26], [0.26, 0.6], [0.5, 0.505], [0.0, 1.0]] {
+            let way = PoseSeries::sampled(21, |share| path.at(from + share * (to - from)));
+            // the pose beside the lowest one stands by a step of at most 15 mm farther, where the bottom is higher by as much as it leans
+            let step = 15.0 * (to - from) / POSES as f64;
+            let near_enough = step * (lead.abs() + 0.05);
+            for place in 0..55 {
+                let (row, column) = (f64::from(place % 5 - 2), f64::from(place / 5 - 1) / 8.0);
+                let line = fields.surface.at([0.5 + 0.1 * row, from + (to - from) * column]);
+                let brute = scanned_at::<POSES>(&way, [0.0, 1.0], (1.0, &line), |bottom, [enters, leaves]| {
+                    (enters <= bottom && bottom < leaves).then_some(bottom)
+                });
+                for near in [column, 0.5, 0.0, 1.0] {
+                    match lowest(&way, &cutter, &line, near) {
+                        // rounding decides of the contact at the end itself
+                        None => assert!(!brute.is_finite() || row == 0.0, "{lead} {from} {place} {near}: {brute}"),
+                        Some(_) if !brute.is_finite() && row == 0.0 => {}
+                        Some(found) => {
+                            let off = brute - found.height;
+                            let is_beside = off > -1e-9 && off < near_enough + 1e-9;
+                            assert!(is_beside, "{lead} {tilt} {from} {place} {near}: {found:?} {brute}");
+                            passed += 1;
+                            heels += u32::from(found.height > 0.05);
+                        }
+                    }
+                    beyond += u32::from(!brute.is_finite());
+                }
+            }
+        }
+    }
+    // some lines only the bottom at the start of a way is over
+    assert!(passed > 1500 && beyond > 100 && heels > 10, "{passed} {beyond} {heels}");
 }
 
 #[test]

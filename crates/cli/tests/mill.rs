@@ -168,8 +168,22 @@ fn pictures_reports_and_pages_show_what_is_left() {
     let told: Value = serde_json::from_str(&run(&["report", &spec, "--json"])).unwrap();
     assert_eq!(told["millings"][0]["map"]["points"], 465);
     let html = text_of(&out.join("milled.report.html"));
-    for words in ["What is left, \u{b5}m, by shares of the milled part", "What the axes do", "clearance along the pass"]
-    {
+    let setup = &told["millings"][0]["setup"];
+    assert_eq!([&setup["cutter"], &setup["machine"][1]], ["ball_mill", "five_axis_table_table"], "{setup}");
+    let radius = setup["settings"].as_array().unwrap().iter().find(|one| one["name"] == "radius").expect("a radius");
+    assert_eq!((radius["value"].as_f64(), radius["unit"].as_str()), (Some(1.0), Some("mm")));
+    for words in [
+        "What is left, \u{b5}m, by shares of the milled part",
+        "What the axes do",
+        "clearance along the pass",
+        "Cutter and program",
+        "radius 1 mm, reach 20 mm, holder radius 8 mm, holder length 40 mm",
+        "9, evenly spread, one way",
+        "600 mm/min of the cutter along the surface",
+        "not said: --spindle does",
+        "none chosen: --nc of",
+        "70.000 deg",
+    ] {
         assert!(html.contains(words), "{words}");
     }
     run(&["view", &spec]);
@@ -215,6 +229,44 @@ fn other_cutters_leave_what_is_planned() {
     }
 }
 
+/// Flat and bull-nose end mills, whose passes end a little before the round edge has cut what lies beside them: plan and map are had, programs
+/// leave what is planned, and how much is missing is told with a place.
+#[test]
+fn flat_and_bull_nose_end_mills_leave_what_is_planned() {
+    let out = folder("mill_flat");
+    let flat = "flat_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)";
+    let bull = "bull_mill(radius: 1 mm, corner: 0.2 mm, reach: 20 mm, holder_radius: 8 mm)";
+    let rounding = 1e3 * (3.0 * 0.5e-4 + 2.0 * 0.5e-5_f64.to_radians() * 200.0);
+    for (cutter, lean) in [
+        (flat, "lead 30 deg"),
+        (flat, "lead 20 deg\n tilt -5 deg"),
+        (flat, "lead 25 deg\n tilt -10 deg"),
+        (bull, "lead 20 deg\n tilt -5 deg"),
+    ] {
+        // blocks are shorter than the cutter is wide, and longer
+        for blocks in [9, 40] {
+            let area = AREA.replace("0.8 by 9", &format!("0.8 by {blocks}"));
+            let spec = written(&out, "milled.chain", &job("work_z: 60 mm", cutter, &(area + lean)));
+            json(&spec, &out, &["--nc", "linuxcnc"]);
+            let program = out.join("milled.part.ngc");
+            let read = json(&spec, &out, &["--verify", program.to_str().unwrap()]);
+            let height = |value: &Value| value["height_um"].as_f64().expect("a height");
+            let (cusp, most, least) = (height(&read["cusp"]), height(&read["blocks"][0]), height(&read["blocks"][1]));
+            let (map, verified) = (&read["map"], &read["verified"]);
+            assert_eq!([&map["untouched"], &verified["untouched"]], [0, 0], "{cutter} {lean}: {map}");
+            let left = height(&map["left"][0]);
+            // the highest ridge is that at an end, where the map has no point
+            assert!(left <= cusp + 1e-9 && left > 0.2 * cusp, "{cutter} {lean}: {map} {cusp}");
+            assert!(height(&map["left"][1]) > -1e-6, "{cutter} {lean}: {map}");
+            let [left, deep] = [0, 1].map(|k| height(&verified["left"][k]));
+            assert!(left < cusp + most.max(0.0) + rounding, "{cutter} {lean}: {left} um, planned {cusp} and {most}");
+            assert!(deep > least.min(0.0) - rounding, "{cutter} {lean}: {deep} um, planned {least}");
+            let told = read["remarks"].to_string();
+            assert_eq!(told.contains("the edge of cutter.cutting is round"), cutter == flat, "{told}");
+        }
+    }
+}
+
 /// Whole programs, also of several spaces, run through LinuxCNC's interpreter: each cutting block arrives, nothing is refused.
 #[test]
 fn linuxcnc_runs_whole_programs() {
@@ -254,7 +306,8 @@ fn what_cannot_be_milled_is_told_with_its_place() {
     let fine = lean("5", "70").replace("0.55 by 9", "0.55, scallop 1e-9 um");
     let here = "work_z: 60 mm";
     let near_pole = |tilt: &str| lean("-47", tilt).replace("0.8 by 9", "0.8 by 5");
-    let cases: [(String, &[&str], &[&str]); 7] = [
+    let flat = "flat_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)";
+    let cases: [(String, &[&str], &[&str]); 8] = [
         (
             job(here, &large, &clear),
             &[
@@ -301,8 +354,16 @@ fn what_cannot_be_milled_is_told_with_its_place() {
             &[],
         ),
         (
-            job(here, "flat_mill(radius: 1 mm, reach: 20 mm, holder_radius: 8 mm)", &lean("0", "0")),
+            job(here, flat, &lean("0", "0")),
             &["the bottom of cutter.cutting lies flat on concave at profilewise 0.4500", "give it a `lead` above zero"],
+            &[],
+        ),
+        (
+            job(here, flat, &lean("5", "70")),
+            &[
+                "the passes beside profilewise 0.4500, lengthwise 0.2375 do not meet",
+                "lean the cutter more with `lead` and less with `tilt`: to the side its edge cuts no farther",
+            ],
             &[],
         ),
     ];

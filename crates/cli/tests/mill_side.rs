@@ -124,6 +124,63 @@ fn a_bevel_flank_leaves_what_it_leaves() {
     assert!(rms("0.48 .. 0.52", 2) < 0.5 * two);
 }
 
+/// The least height at which a line enters a cone, over the positions of a pass; between them by the parabola through three.
+fn scanned(poses: &[[f64; 6]], (half_angle, tip_radius, length): (f64, f64, f64), line: &[f64; 6]) -> f64 {
+    let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (low, slope) = (tip_radius * (1.0 - half_angle.sin()), half_angle.tan());
+    let normal = [line[3], line[4], line[5]];
+    let height = |pose: &[f64; 6]| {
+        let (from, axis) = ([0, 1, 2].map(|k| line[k] - pose[k]), [pose[3], pose[4], pose[5]]);
+        // |y|² − z² = (r + (z − low) tan)² on the cone, y and z being linear in the height
+        let [z, dz] = [dot(from, axis), dot(normal, axis)];
+        let [r, dr] = [tip_radius * half_angle.cos() + (z - low) * slope, dz * slope];
+        let (a, b) = (1.0 - dz * dz - dr * dr, dot(from, normal) - z * dz - r * dr);
+        let root = b * b - a * (dot(from, from) - z * z - r * r);
+        let height = (-b - root.sqrt()) / a;
+        let is_met = root >= 0.0 && (low..=length).contains(&(z + height * dz));
+        if is_met { height } else { f64::INFINITY }
+    };
+    let heights: Vec<f64> = poses.iter().map(height).collect();
+    let at = (0..heights.len()).min_by(|a, b| heights[*a].total_cmp(&heights[*b])).expect("positions");
+    if at == 0 || at + 1 == heights.len() {
+        return heights[at];
+    }
+    let [a, b, c] = [heights[at - 1], heights[at], heights[at + 1]];
+    if a.is_finite() && c.is_finite() { b - (c - a).powi(2) / (8.0 * (a - 2.0 * b + c)) } else { b }
+}
+
+/// What one pass leaves on a bevel flank at the points of its map is what the cone leaves in very many positions, without envelopes.
+#[test]
+fn a_bevel_flank_is_left_as_brute_force_leaves_it() {
+    let out = folder("side_bevel_scanned");
+    let cone = "conical_mill(half_angle: 4 deg, tip_radius: 1 mm, cutting_length: 25 mm, reach: 40 mm)";
+    let milling = "side profilewise: 0.4 .. 0.6 by 3\n along lengthwise: 0.4 .. 0.6 by 801\n";
+    let spec = written(&out, "milled.chain", &pinion(cone, milling));
+    let found = json(&spec, &out, &["--rows", "7", "--columns", "11"]);
+    let rows = |name: &str| -> (Vec<String>, Vec<Vec<String>>) {
+        let text = std::fs::read_to_string(out.join(name)).expect("it is written");
+        let mut rows =
+            text.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').map(String::from).collect());
+        (rows.next().expect("a header"), rows.collect())
+    };
+    let columns = |(header, rows): (Vec<String>, Vec<Vec<String>>), names: [&str; 6]| -> Vec<[f64; 6]> {
+        let at = names.map(|name| header.iter().position(|title| title == name).expect(name));
+        rows.iter().map(|row| at.map(|at| row[at].parse().expect("a number"))).collect()
+    };
+    let poses = columns(rows("milled.part.csv"), ["tip_x", "tip_y", "tip_z", "axis_x", "axis_y", "axis_z"]);
+    let lines = columns(rows("milled.part.left.csv"), ["x", "y", "z", "nx", "ny", "nz"]);
+    let left = found["map"]["heights_um"].as_array().expect("heights");
+    assert!(poses.len() >= 801 && lines.len() == 77 && left.len() == 77);
+    let (mut most, mut least) = (0.0f64, 0.0f64);
+    for (line, left) in lines.iter().zip(left) {
+        let (left, brute) = (number(left), 1e3 * scanned(&poses, (4f64.to_radians(), 1.0, 25.0), line));
+        // parabolas through heights at positions of some 10 um
+        assert!((left - brute).abs() < 1e-5, "{left} {brute} um at {line:?}");
+        (most, least) = (most.max(brute), least.min(brute));
+    }
+    assert!(most > 0.1 && least < -0.1, "a bevel flank is not ruled: {most} {least} um");
+}
+
 /// Exit code 3 with the reason and a way out.
 #[test]
 fn what_one_pass_does_not_cover_is_told() {

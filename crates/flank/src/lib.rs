@@ -82,6 +82,7 @@ pub use convert::milling::mill;
 pub use convert::milling::result::{
     BallAt, ClearanceKept, CurvatureAt, HeightLeft, HeightMap, MillResult, MilledAxis, ProvenClearance, VerifiedProgram,
 };
+pub use convert::milling::setup::{CutterSetting, MillSetup};
 pub use convert::milling::side::SideLeft;
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from flank._errors import InputError
 from flank._points import Floats
-from flank._quantities import Quantity, errors, names
+from flank._quantities import Quantity, errors, names, text
 
 Path_ = str | os.PathLike[str]
 R = TypeVar("R")
@@ -39,6 +39,19 @@ def margin_shares(margin: tuple[float, float] | None) -> list[float] | None:
 def mounting_errors(values: Mapping[str, Quantity] | None) -> list[tuple[str, str, float]]:
     """Axes with how far they are off."""
     return errors(values or {}, "errors")
+
+
+def ranges(values: Mapping[str, tuple[Quantity, Quantity]] | None) -> list[tuple[str, list[str]]]:
+    """Settings with the two values that they may lie between.
+
+    >>> from flank._arguments import ranges
+    >>> ranges({"mill.work_z": ("20 mm", (120, "mm"))})
+    [('mill.work_z', ['20 mm', '120 mm'])]
+    """
+    for name, ends in (values or {}).items():
+        if not isinstance(ends, tuple | list) or len(ends) != 2:
+            raise InputError(f"`clamp[{name!r}]` is {ends!r}: write two values, (\"20 mm\", \"120 mm\")")
+    return [(name, [text(end) for end in ends]) for name, ends in (values or {}).items()]
 
 
 def chosen(value: str, what: str, known: tuple[str, ...]) -> str:

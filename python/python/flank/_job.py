@@ -22,6 +22,7 @@ from flank._arguments import (
     margin_shares,
     mounting_errors,
     parabola,
+    ranges,
     single,
 )
 from flank._errors import InputError
@@ -503,6 +504,7 @@ class Job:
         sensitivity: bool = False,
         vhj: bool = False,
         certify: bool = False,
+        milled: str | None = None,
     ) -> dict[str, _results.Contact]:
         """All contacts of the job, or one, by their names. Arguments as for `contact`.
 
@@ -518,6 +520,7 @@ class Job:
             "sensitivity": sensitivity,
             "vhj": vhj,
             "certify": certify,
+            "milled": milled,
         }
         native = self._native
         return {
@@ -535,12 +538,13 @@ class Job:
         sensitivity: bool = False,
         vhj: bool = False,
         certify: bool = False,
+        milled: str | None = None,
     ) -> _results.Contact:
         """Rolls two flanks on each other: where they touch, transmission error, marking pattern.
 
         `errors` are mounting errors by axis: `{"m.E": "0.1 mm", "m.S": "2 arcmin"}`; `positions` are those over a pitch; `compound` is the
         thickness of the marking compound. `sensitivity` adds what each axis and setting does, `vhj` the mountings that bring the contact to
-        toe, middle and heel, `certify` proofs.
+        toe, middle and heel, `certify` proofs, `milled` the pair with the flank that a milling of the job leaves.
 
         >>> import flank
         >>> contact = flank.load("specs/pairs/bevel_19x62.chain").contact("drive_side", errors={"m.E": "0.1 mm"})
@@ -555,6 +559,7 @@ class Job:
             sensitivity=sensitivity,
             vhj=vhj,
             certify=certify,
+            milled=milled,
         )
         return single(found, "contact")
 
@@ -568,6 +573,10 @@ class Job:
         approach: Quantity = "5 mm",
         spaces: int = 1,
         verify: Path_ | None = None,
+        rows: int = 15,
+        columns: int = 31,
+        clamp: Mapping[str, tuple[Quantity, Quantity]] | None = None,
+        certify: Quantity | None = None,
     ) -> dict[str, _machines.Milling]:
         """All millings of the job, or one, by their names. Arguments as for `mill`.
 
@@ -583,6 +592,10 @@ class Job:
             "approach": length(approach, "approach"),
             "spaces": count(spaces, "spaces", 1, 1_000_000),
             "verify": None if verify is None else os.fspath(verify),
+            "rows": count(rows, "rows", 1, 1000),
+            "columns": count(columns, "columns", 1, 1000),
+            "clamp": ranges(clamp),
+            "certify": length(certify, "certify"),
         }
         native = self._native
         return {
@@ -600,10 +613,16 @@ class Job:
         approach: Quantity = "5 mm",
         spaces: int = 1,
         verify: Path_ | None = None,
+        rows: int = 15,
+        columns: int = 31,
+        clamp: Mapping[str, tuple[Quantity, Quantity]] | None = None,
+        certify: Quantity | None = None,
     ) -> _machines.Milling:
         """Passes of an end mill over a surface on a five-axis machine: ridges, blocks, axes; programs by `write`.
 
-        `feed` is mm/min, `spindle` 1/min; `verify` is a program that is read back.
+        `feed` is mm/min, `spindle` 1/min; `verify` is a program that is read back; what is left is known at `rows` times `columns` points.
+        `clamp` are settings of the milling machine that may lie between two values, so that its axes go slower:
+        `{"mill.work_z": ("20 mm", "120 mm")}`. `certify` proves that the cutter stays clear between its positions, too, but for so much.
 
         >>> import flank
         >>> flank.load("specs/bevel/milled_pinion.chain").mill("finish")["passes"]
@@ -617,6 +636,10 @@ class Job:
             approach=approach,
             spaces=spaces,
             verify=verify,
+            rows=rows,
+            columns=columns,
+            clamp=clamp,
+            certify=certify,
         )
         return single(found, "milling")
 

@@ -101,10 +101,15 @@ class Milling(Result):
     """Passes of a cutter over a surface, what they leave, and what a machine's axes do."""
 
     def write(
-        self, folder: Path_, formats: str | Iterable[str] = ("csv",), *, nc: str | Iterable[str] = ()
+        self,
+        folder: Path_,
+        formats: str | Iterable[str] = ("csv",),
+        *,
+        nc: str | Iterable[str] = (),
+        map: str | Iterable[str] = (),
     ) -> list[str]:
-        """Writes cutter locations (csv, apt) and programs (fanuc, siemens, linuxcnc, heidenhain)."""
-        return self._write(folder, format=names(formats), nc=names(nc))
+        """Writes cutter locations (csv, apt), programs (fanuc, siemens, linuxcnc, heidenhain) and the `map` of what is left (csv, …)."""
+        return self._write(folder, format=names(formats), nc=names(nc), map=names(map))
 
 
 class Solids(Result):

@@ -93,7 +93,7 @@ pub(super) fn compose(of: &MillingDrawing, [width, height]: [f64; 2]) -> Figure 
     {
         caption += &format!(" One of {every} passes is drawn.");
     }
-    of.section.draw(Rect { left: middle + 0.5 * GAP, ..upper }, &mut sheet);
+    of.section.draw(of.is_one_pass(), Rect { left: middle + 0.5 * GAP, ..upper }, &mut sheet);
     let lower = Rect { top: upper.bottom + 0.5 * GAP, ..area };
     let count = of.charts.len().max(1) as f64;
     for (k, chart) in of.charts.iter().enumerate() {
@@ -114,13 +114,23 @@ pub(super) fn head(title: &str, about: &str, rect: Rect, sheet: &mut Sheet) {
 }
 
 impl MillingDrawing {
+    /// A pass alone has no ridges.
+    fn is_one_pass(&self) -> bool {
+        self.passes.len() == 1
+    }
+
     /// The ridges with the passes between them; one of how many passes is drawn.
     fn draw_map(&self, rect: Rect, sheet: &mut Sheet) -> Option<usize> {
         let panel = Panel::of_patch(&self.ridges, 0, Style::Bands)?;
         let chart = panel.chart(Rect { top: rect.top + HEAD, bottom: rect.bottom - FOOT, ..rect });
         let unit = shown_unit(&panel.field.unit);
         let about = format!("{}, {unit}; white: the contact on each pass; {}", self.ridges.name, panel.about(&chart));
-        head("ridges between the passes", &about, rect, sheet);
+        head(
+            if self.is_one_pass() { "what the pass leaves" } else { "ridges between the passes" },
+            &about,
+            rect,
+            sheet,
+        );
         let titles = panel.projection.titles.each_ref();
         let numbered = panel.projection.is_in_mm();
         chart.draw_axes(titles.map(|text| Title { text, numbered }), sheet);
@@ -169,8 +179,12 @@ fn ring(at: Place) -> Vec<Place> {
 }
 
 impl RidgeSection {
-    fn draw(&self, rect: Rect, sheet: &mut Sheet) {
-        head("cutter across the passes, at the highest ridge", &self.about, rect, sheet);
+    fn draw(&self, is_one_pass: bool, rect: Rect, sheet: &mut Sheet) {
+        let title = match is_one_pass {
+            true => "across the pass, where most is left",
+            false => "cutter across the passes, at the highest ridge",
+        };
+        head(title, &self.about, rect, sheet);
         let map = Rect { top: rect.top + HEAD, ..rect }.inside(chart::MARGINS);
         let [across, _] = chart::bounds(self.left.iter().copied());
         let top = 2.2 * self.ridge[1].max(1e-9);

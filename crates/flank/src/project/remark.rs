@@ -131,6 +131,8 @@ pub enum RemarkKind {
     NoAxes,
     /// A surface is continued beyond what its tool makes.
     Continued,
+    /// A cut ends before the passes of its cutter do.
+    ShortCut,
 }
 
 impl<Kind> Message<Kind> {

@@ -24,6 +24,7 @@ fn of_milling(findings: &Findings<'_, '_>, (result, drawn): &super::ShownMilling
         blocks.push(Block::Notice(Tone::Open, findings.spelled(&remark.message), Vec::new()));
     }
     blocks.push(Block::Facts(result.facts()));
+    blocks.push(setup(findings, result));
     blocks.extend(left(result));
     blocks.extend(axes(result));
     if let Some(drawn) = drawn {
@@ -32,6 +33,13 @@ fn of_milling(findings: &Findings<'_, '_>, (result, drawn): &super::ShownMilling
         blocks.push(Block::Figure(Figure { name, picture, caption: format!("milling: {shows}") }));
     }
     blocks
+}
+
+/// Cutter and program, beside what they leave.
+fn setup(findings: &Findings<'_, '_>, result: &MillResult) -> Block {
+    let columns = vec![Column::words("of"), Column::sentences("as it is")];
+    let rows = result.setup.facts().into_iter().map(|(name, text)| vec![name, findings.spelled(&text)]);
+    Block::Table("Cutter and program".to_string(), columns, rows.collect())
 }
 
 /// What is left at some of the points: those of a report fit a page.

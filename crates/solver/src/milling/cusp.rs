@@ -8,6 +8,8 @@ use crate::milling::series::PoseSeries;
 const MOST_STEPS: u32 = 200;
 /// A root is as near as this share of its bracket.
 const CLOSE: f64 = 1e-15;
+/// What lies within this share of an end of a block is beside it.
+const ENDS: f64 = 0.05;
 /// Steps of a search for an extreme by sections.
 const SECTIONS: u32 = 60;
 
@@ -31,14 +33,16 @@ pub fn cusp(
     cutter: &Cutter,
 ) -> Option<Cusp> {
     let mut near = [along; 2];
+    // a pass that does not reach leaves all
     let mut heights = |share: f64| -> Option<[f64; 2]> {
         let line = across.at(share);
-        let mut out = [0.0; 2];
+        let mut out = [f64::INFINITY; 2];
         for k in [0, 1] {
-            let found = lowest(passes[k], cutter, &line, near[k])?;
-            (out[k], near[k]) = (found.height, found.share);
+            if let Some(found) = lowest(passes[k], cutter, &line, near[k]) {
+                (out[k], near[k]) = (found.height, found.share);
+            }
         }
-        Some(out)
+        out.iter().any(|height| height.is_finite()).then_some(out)
     };
     let [mut low, mut high] = shares;
     let difference = |[a, b]: [f64; 2]| a - b;
@@ -52,8 +56,9 @@ pub fn cusp(
     let mut side = 0;
     let (mut share, mut height) = (low, 0.0);
     for _ in 0..MOST_STEPS {
-        share =
-            if at_high > at_low { (low * at_high - high * at_low) / (at_high - at_low) } else { 0.5 * (low + high) };
+        let whole = at_high - at_low;
+        let is_known = whole > 0.0 && whole.is_finite();
+        share = if is_known { (low * at_high - high * at_low) / whole } else { 0.5 * (low + high) };
         let found = heights(share)?;
         height = 0.5 * (found[0] + found[1]);
         let off = sign * difference(found);
@@ -75,7 +80,7 @@ pub fn cusp(
             side = 1;
         }
     }
-    Some(Cusp { share, height })
+    height.is_finite().then_some(Cusp { share, height })
 }
 
 /// What a block leaves along its pass, with the share of the pass: the extreme farther from `stock`, mm.
@@ -95,7 +100,13 @@ pub fn left_by_block(
     // the middle tells which way it goes
     let middle = left(0.5 * (from + to))?;
     let sign = if middle < 0.0 { -1.0 } else { 1.0 };
-    let found = peak([from, to], |share| left(share).map(|left| sign * left))?;
+    // an edge meets what lies beside an end of its block in the next one; at the ends a block is where it should be
+    let is_end = |share: f64| (share - from).min(to - share) < ENDS * (to - from);
+    let value = |share: f64| match left(share) {
+        None if is_end(share) => Some(f64::NEG_INFINITY),
+        left => left.map(|left| sign * left),
+    };
+    let found = peak([from, to], value)?;
     Some(Cusp { share: found.0, height: stock + sign * found.1 })
 }
 

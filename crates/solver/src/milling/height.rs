@@ -11,6 +11,10 @@ const MOST_STEPS: u32 = 60;
 const CLOSE: f64 = 1e-14;
 /// A residual up to this counts as met, mm² or mm² per share.
 const MET: f64 = 1e-9;
+/// Places of a way that are looked at for a start.
+const STARTS: u32 = 9;
+/// How far beyond the ends of a way a share counts as on it: rounding.
+const ON_END: f64 = 1e-9;
 
 /// A point of a surface and the unit vector out of its body there.
 pub type NormalLine = [f64; 6];
@@ -182,28 +186,119 @@ fn of_surface(
     has: impl Fn([Jet; 2]) -> bool,
 ) -> Option<Lowest> {
     let at = |u: f64, h: f64| seen(&way.moving(u), line, h);
-    let within = newton(near, |u, h| {
-        let jet = off(at(u, h));
-        ([jet.v, jet.u], [[jet.u, jet.h], [jet.uu, jet.uh]])
-    });
-    let found = within.filter(|found| (0.0..=1.0).contains(&found.share)).or_else(|| {
-        // the way ends before
-        let end = if within.map_or(near, |found| found.share) < 0.5 { 0.0 } else { 1.0 };
-        at_end(way, line, end, &off)
-    });
-    found.filter(|found| {
-        let seen = at(found.share, found.height);
-        off(seen).h < 0.0 && has(seen)
+    let from = |near: f64| {
+        let within = newton([near, 0.0], |u, h| {
+            let jet = off(at(u, h));
+            ([jet.v, jet.u], [[jet.u, jet.h], [jet.uu, jet.uh]])
+        });
+        let found = within.filter(|found| (0.0..=1.0).contains(&found.share)).or_else(|| {
+            // the way ends before
+            let end = if within.map_or(near, |found| found.share) < 0.5 { 0.0 } else { 1.0 };
+            at_end(way, line, end, &off)
+        });
+        found.filter(|found| {
+            let seen = at(found.share, found.height);
+            off(seen).h < 0.0 && has(seen)
+        })
+    };
+    // on a way that is long against the cutter, where it comes nearest to the point
+    from(near).or_else(|| {
+        let off = |share: &f64| off(at(*share, 0.0)).v;
+        let places = (0..STARTS).map(|k| f64::from(k) / f64::from(STARTS - 1));
+        from(places.min_by(|a, b| off(a).total_cmp(&off(b)))?)
     })
 }
 
-/// The line meets the edge's circle: its distance from the axis and its height are those of the edge.
+/// An edge, and the plane bottom within it: the line enters the cutter where it meets the edge's circle, or through the bottom.
+///
+/// A moving circle meets a line twice, with the front and with the heel. Over the point in question the bottom is lowest where the line comes
+/// under it: of both that is the one from which on the bottom rises while the line stays under it.
 fn of_edge(way: &PoseSeries, arc: CutterArc, line: &NormalLine, near: f64) -> Option<Lowest> {
-    let found = newton(near, |u, h| {
+    let circle = |u: f64, h: f64| {
         let [z, q] = seen(&way.moving(u), line, h);
         ([q.v - arc.rho * arc.rho, z.v - arc.z], [[q.u, q.h], [z.u, z.h]])
-    });
-    found.filter(|found| (0.0..=1.0).contains(&found.share))
+    };
+    let is_entered = |found: &Lowest| {
+        let (_, [[qu, qh], [zu, zh]]) = circle(found.share, found.height);
+        // the bottom keeps its height on the way (z_h, -z_u) of share and height
+        (qu * zh - qh * zu) * zu > 0.0
+    };
+    let bottom = |u: f64| Bottom::at(way, arc, line, u);
+    let first = newton([near, 0.0], circle);
+    let from = first.map_or(near, |found| found.share.clamp(0.0, 1.0));
+    // the other place lies as far from where the line is nearest to the axis
+    let opposite = bottom(from).and_then(|at| bottom(from + at.to_other())).and_then(|at| newton([at.u, at.h], circle));
+    let on_edge = [first, opposite].into_iter().flatten().filter(|found| is_on_way(found.share) && is_entered(found));
+    let ends = [0.0, 1.0].map(bottom);
+    let under = ends.into_iter().flatten().filter(|at| at.off < 0.0);
+    let under = under.map(|at| Lowest { height: at.h, share: at.u, is_within: false });
+    let touched = match ends {
+        [Some(a), Some(b)] if a.rises < 0.0 && b.rises > 0.0 => lowest_bottom(bottom).filter(|at| at.off < 0.0),
+        _ => None,
+    };
+    let touched = touched.map(|at| Lowest { height: at.h, share: at.u, is_within: true });
+    on_edge.chain(under).chain(touched).min_by(|a, b| a.height.total_cmp(&b.height))
+}
+
+/// The plane of an edge where a line meets it, at a share of the way.
+#[derive(Clone, Copy)]
+struct Bottom {
+    u: f64,
+    /// The height on the line, and how it changes with the share.
+    h: f64,
+    rises: f64,
+    /// The square of the distance from the axis less that of the edge, with its derivatives by the share.
+    off: f64,
+    off_1: f64,
+    off_2: f64,
+}
+
+impl Bottom {
+    /// `None` where the bottom does not face the surface.
+    fn at(way: &PoseSeries, arc: CutterArc, line: &NormalLine, u: f64) -> Option<Bottom> {
+        let part = |row: &[f64; 6], from: usize| Vector3::new(row[from], row[from + 1], row[from + 2]);
+        let (moving, normal) = (way.moving(u), part(line, 3));
+        let [w, w1, w2] = [part(&moving[0], 0) - part(line, 0), part(&moving[1], 0), part(&moving[2], 0)];
+        let [a, a1, a2] = [0, 1, 2].map(|k| part(&moving[k], 3));
+        let [faces, faces_1, faces_2] = [a, a1, a2].map(|a| normal.dot(&a));
+        let h = (w.dot(&a) + arc.z) / faces;
+        let h1 = (w1.dot(&a) + w.dot(&a1) - h * faces_1) / faces;
+        let h2 = (w2.dot(&a) + 2.0 * w1.dot(&a1) + w.dot(&a2) - 2.0 * h1 * faces_1 - h * faces_2) / faces;
+        let [y, y1, y2] = [normal * h - w, normal * h1 - w1, normal * h2 - w2];
+        let found = Bottom {
+            u,
+            h,
+            rises: h1,
+            off: y.norm_squared() - arc.z * arc.z - arc.rho * arc.rho,
+            off_1: 2.0 * y.dot(&y1),
+            off_2: 2.0 * (y1.norm_squared() + y.dot(&y2)),
+        };
+        (faces > 0.0 && h.is_finite() && h1.is_finite() && h2.is_finite()).then_some(found)
+    }
+
+    /// How far on the way the line meets the circle the other time, if it meets it here.
+    fn to_other(&self) -> f64 {
+        (-2.0 * self.off_1 / self.off_2).clamp(-2.0, 2.0)
+    }
+}
+
+/// Where the bottom falls before and rises behind.
+fn lowest_bottom(bottom: impl Fn(f64) -> Option<Bottom>) -> Option<Bottom> {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..MOST_STEPS {
+        let middle = bottom(0.5 * (low + high))?;
+        if middle.rises < 0.0 {
+            low = middle.u;
+        } else {
+            high = middle.u;
+        }
+    }
+    bottom(0.5 * (low + high))
+}
+
+/// Whether a share is one of the way: rounding does not end it.
+fn is_on_way(share: f64) -> bool {
+    (-ON_END..=1.0 + ON_END).contains(&share)
 }
 
 /// A cutter that stands still at an end of its way.
@@ -225,10 +320,10 @@ fn at_end(way: &PoseSeries, line: &NormalLine, end: f64, off: &impl Fn([Jet; 2])
     (missed < MET).then_some(Lowest { height: h, share: end, is_within: false })
 }
 
-/// Newton's method for share and height, the height being zero at first. Shares go a little beyond both ends at the most.
-fn newton(near: f64, equations: impl Fn(f64, f64) -> ([f64; 2], [[f64; 2]; 2])) -> Option<Lowest> {
+/// Newton's method for share and height from a start. Shares go a little beyond both ends at the most.
+fn newton([near, height]: [f64; 2], equations: impl Fn(f64, f64) -> ([f64; 2], [[f64; 2]; 2])) -> Option<Lowest> {
     const FARTHEST: f64 = 0.5;
-    let (mut u, mut h, mut close) = (near, 0.0, 0);
+    let (mut u, mut h, mut close) = (near, height, 0);
     for _ in 0..MOST_STEPS {
         let ([f, g], [[a, b], [c, d]]) = equations(u, h);
         let whole = a * d - b * c;

@@ -77,7 +77,7 @@ impl SweptCutter {
         SweptCutter {
             ways: ways.into_iter().map(way).collect(),
             cutter: cutter.clone(),
-            body: ToolBody { pieces: cutter.pieces.clone() },
+            body: body(&cutter.pieces),
             ball,
         }
     }
@@ -115,6 +115,18 @@ impl SweptCutter {
         let found = lowest(&way.series, &self.cutter, line, 0.5)?;
         Some(LeftOver { height: found.height, way: way.number })
     }
+}
+
+/// What lies within the pieces; an edge has its bottom, and a shank above it.
+fn body(pieces: &[OutlinePiece]) -> ToolBody {
+    let of = |piece: &OutlinePiece| match *piece {
+        OutlinePiece::Arc { center: [rho, z], radius: 0.0, .. } => vec![
+            OutlinePiece::Line { from: [0.0, z], to: [rho, z] },
+            OutlinePiece::Line { from: [rho, z], to: [rho, z + 4.0 * rho] },
+        ],
+        piece => vec![piece],
+    };
+    ToolBody { pieces: pieces.iter().flat_map(of).collect() }
 }
 
 impl Ball {

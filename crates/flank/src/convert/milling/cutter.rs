@@ -28,6 +28,11 @@ impl MillingCutter {
         Ok(MillingCutter { cutting })
     }
 
+    /// Whether a sharp edge of it cuts.
+    pub(super) fn has_edge(&self) -> bool {
+        self.cutting.pieces.iter().any(|piece| matches!(piece, OutlinePiece::Arc { radius: 0.0, .. }))
+    }
+
     /// Which normals it may touch with, in words.
     pub(super) fn angles(&self) -> String {
         let [from, to] = self.cutting.angles().unwrap_or_default().map(f64::to_degrees);

@@ -247,7 +247,10 @@ fn clearances(
     }
     Ok((!curves.is_empty()).then(|| PassChart {
         title: "clearance along the pass".to_string(),
-        about: format!("pass {}, beside the highest ridge; red: what is wanted", pass + 1),
+        about: match found.milled.poses.len() {
+            1 => "red: what is wanted".to_string(),
+            _ => format!("pass {}, beside the highest ridge; red: what is wanted", pass + 1),
+        },
         over: over(target),
         unit: "mm".to_string(),
         curves,

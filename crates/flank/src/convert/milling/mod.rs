@@ -14,6 +14,7 @@ mod plan;
 mod program;
 mod proof;
 pub(crate) mod result;
+pub(crate) mod setup;
 pub(crate) mod side;
 mod target;
 mod text;
@@ -22,6 +23,7 @@ mod verify;
 use std::time::Instant;
 
 use flank_chain_dsl::{Job, Milling, PassSpacing};
+use flank_export::fixed;
 use flank_expr::Graph;
 use flank_solver::{Bending, PoseSeries, SweptCutter};
 use rayon::prelude::*;
@@ -261,6 +263,7 @@ fn nothing(job: &Job<'_>, target: &Target<'_, '_>, request: &MillRequest) -> Mil
         frame: target.frame().to_string(),
         cutter: target.milling.cutter_name.clone(),
         coordinates: target.milling.area.names.clone(),
+        setup: setup::MillSetup::new(job, target, request),
         passes: None,
         positions: None,
         pass_step: None,
@@ -315,6 +318,15 @@ fn describe(
     result.blocks = Some(plan.blocks.map(|ends| left_at(target, ends)));
     result.polynomials_off = Some(fields.off);
     result.timing.points = milled.lattice.frames.len();
+    result.remarks.extend(plan.short.map(|short| {
+        let (place, by) = (target.place(short.shares), fixed(short.height, 4));
+        let message = format!(
+            "the cut beside the passes ends at {place}, {by} mm before these: the edge of {} is round",
+            target.milling.cutter_name
+        );
+        let way = "let `along` run so much farther than what is to be milled".to_string();
+        Remark::new(RemarkKind::ShortCut, target.name(), message).with(vec![way])
+    }));
     if let Some((unknown, by)) = milled.lattice.beyond {
         let message = target.beyond(unknown, by);
         result.remarks.push(Remark::new(RemarkKind::Continued, target.name(), message));

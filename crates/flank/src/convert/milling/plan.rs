@@ -17,6 +17,10 @@ const COLUMNS: usize = 17;
 const FEW_COLUMNS: usize = 5;
 /// Passes whose blocks are looked at while their number is looked for.
 const FEW_PASSES: usize = 5;
+/// Of a ridge no more than this share of the passes is missing at their ends.
+const ENDS: f64 = 1.0 / 16.0;
+/// Halvings until the end of a ridge is found.
+const HALVINGS: u32 = 24;
 /// Points through which the motion of one block is known.
 const POINTS_OF_BLOCK: usize = 9;
 
@@ -33,6 +37,8 @@ pub(super) struct Plan {
     pub(super) shares: [Vec<f64>; 2],
     /// The highest cusp; none beside a pass alone.
     pub(super) cusp: Option<LeftAt>,
+    /// The ridge that ends farthest before its passes do, and how far, mm; none where all go to the end.
+    pub(super) short: Option<LeftAt>,
     /// What straight blocks leave at the most and at the least, less the stock.
     pub(super) blocks: [LeftAt; 2],
     /// Between neighbouring passes, mm, at the most; none of a pass alone.
@@ -79,7 +85,7 @@ impl Planner<'_, '_, '_> {
     pub(super) fn plan(&self) -> Result<Plan, NotDone> {
         let passes = evenly(self.passes()?);
         let along = evenly(self.positions(&passes)?);
-        let cusp = self.highest_cusp(&passes)?;
+        let (cusp, short) = self.highest_cusp(&passes)?;
         let cusp = LeftAt { height: cusp.height - self.stock(), ..cusp };
         let blocks = self.left_by_blocks(&passes, &along, &(0..passes.len()).collect::<Vec<usize>>())?;
         let steps = |k: usize, count: usize| {
@@ -87,7 +93,7 @@ impl Planner<'_, '_, '_> {
             widest / (count - 1) as f64
         };
         let (step, block) = (steps(0, passes.len()), steps(1, along.len()));
-        Ok(Plan { shares: [passes, along], cusp: Some(cusp), blocks, step: Some(step), block })
+        Ok(Plan { shares: [passes, along], cusp: Some(cusp), short, blocks, step: Some(step), block })
     }
 
     fn stock(&self) -> f64 {
@@ -155,20 +161,26 @@ impl Planner<'_, '_, '_> {
         NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way])
     }
 
-    /// The highest cusp between passes.
-    fn highest_cusp(&self, passes: &[f64]) -> Result<LeftAt, NotDone> {
+    /// The highest cusp between passes, and the ridge that ends first.
+    fn highest_cusp(&self, passes: &[f64]) -> Result<(LeftAt, Option<LeftAt>), NotDone> {
         let columns = evenly(COLUMNS);
         let all = self.cusps(passes, &columns, None)?;
+        let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[1])).fold(0.0, f64::max);
+        let missing = all
+            .iter()
+            .zip(columns.iter().cycle())
+            .map(|(cusp, column)| LeftAt { shares: cusp.shares, height: widest * (cusp.shares[1] - column).abs() });
+        let short = missing.filter(|missing| missing.height > 0.0).reduce(higher);
         let (place, first) =
             all.iter().enumerate().max_by(|a, b| a.1.height.total_cmp(&b.1.height)).expect("two passes");
         let (gap, column) = (place / COLUMNS, place % COLUMNS);
         let beside = [column.saturating_sub(1), (column + 1).min(COLUMNS - 1)].map(|k| columns[k]);
         let of_gap = |along: f64| Some(self.cusps(passes, &[along], Some(gap)).ok()?.first()?.height);
         let Some((along, height)) = peak(beside, of_gap).filter(|(_, height)| *height > first.height) else {
-            return Ok(*first);
+            return Ok((*first, short));
         };
         let exact = self.cusps(passes, &[along], Some(gap))?;
-        Ok(LeftAt { shares: [exact[0].shares[0], along], height })
+        Ok((LeftAt { shares: exact[0].shares, height }, short))
     }
 
     /// Cusps between all neighbouring passes, or the two of one gap, at places along them: gap by gap.
@@ -179,10 +191,16 @@ impl Planner<'_, '_, '_> {
         // of each place the ridge, or where there is none
         let of_gap = |gap: usize| -> Result<Vec<LeftAt>, [f64; 2]> {
             let series = [gap, gap + 1].map(|pass| fields.of_pass(pass).pass(passes[pass]));
-            let at = |(column, along): (&PoseSeries, &f64)| {
+            let ridge = |column: &PoseSeries, along: f64| {
                 let shares = [passes[gap], passes[gap + 1]];
-                let found = cusp(column, series.each_ref(), shares, *along, cutter).ok_or([passes[gap], *along])?;
-                Ok(LeftAt { shares: [found.share, *along], height: found.height })
+                let found = cusp(column, series.each_ref(), shares, along, cutter)?;
+                Some(LeftAt { shares: [found.share, along], height: found.height })
+            };
+            let at = |(column, along): (&PoseSeries, &f64)| {
+                let found = ridge(column, *along);
+                found
+                    .or_else(|| last(*along, |along| ridge(&fields.surface.across(along), along)))
+                    .ok_or([passes[gap], *along])
             };
             across.iter().zip(columns).map(at).collect()
         };
@@ -190,8 +208,11 @@ impl Planner<'_, '_, '_> {
         found.map(|found| found.concat()).map_err(|shares| {
             let place = self.target.place(shares);
             let message = format!("the passes beside {place} do not meet: what they leave between them is no ridge");
-            let way = "set them closer together, or take a cutter with a larger arc: the ridge lies beyond the end of this one".to_string();
-            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way])
+            let way = match self.cutter.has_edge() {
+                true => "set them closer together, or lean the cutter more with `lead` and less with `tilt`: to the side its edge cuts no farther than its outermost point",
+                false => "set them closer together, or take a cutter with a larger arc: the ridge lies beyond the end of this one",
+            };
+            NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way.to_string()])
         })
     }
 
@@ -227,6 +248,24 @@ impl Planner<'_, '_, '_> {
         let all = all.map_err(|lost| lost.told(self.target))?;
         Ok(all.into_iter().reduce(|a, b| [higher(a[0], b[0]), lower(a[1], b[1])]).expect("there are passes"))
     }
+}
+
+/// The last ridge before an end of the passes: beside the foremost point of a round edge the cutter ends a little before it.
+fn last(along: f64, ridge: impl Fn(f64) -> Option<LeftAt>) -> Option<LeftAt> {
+    let end = along.round();
+    if (along - end).abs() >= ENDS {
+        return None;
+    }
+    let (mut beyond, mut within) = (along, (end - ENDS).abs());
+    let mut found = ridge(within)?;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (beyond + within);
+        match ridge(middle) {
+            Some(at) => (within, found) = (middle, at),
+            None => beyond = middle,
+        }
+    }
+    Some(found)
 }
 
 /// How many positions on a pass that is at the most so long, mm; `left` is what blocks between so many leave at the most and at the least.

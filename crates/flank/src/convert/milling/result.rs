@@ -4,6 +4,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::clamp::Clamping;
+use super::setup::MillSetup;
 use super::side::SideLeft;
 use crate::project::answer::{Answer, Timing};
 use crate::project::quantity::Travel;
@@ -26,6 +27,8 @@ pub struct MillResult {
     pub cutter: String,
     /// The coordinates that passes are counted by and that they run along.
     pub coordinates: [String; 2],
+    /// With what it is milled, and how.
+    pub setup: MillSetup,
     /// Passes; null where there is no plan.
     pub passes: Option<usize>,
     /// Positions on each pass.

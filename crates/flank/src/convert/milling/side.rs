@@ -309,7 +309,7 @@ pub(super) fn milled<'p, 'g>(
     let shares = [vec![0.5], along.iter().map(|share| start.share(*share)).collect::<Vec<f64>>()];
     let lattice = target.lattice(shares.clone())?;
     let longest = poses.windows(2).map(|pair| super::distance(&pair[0], &pair[1])).fold(0.0, f64::max);
-    let plan = Plan { shares, cusp: None, blocks: blocks(count)?, step: None, block: longest };
+    let plan = Plan { shares, cusp: None, short: None, blocks: blocks(count)?, step: None, block: longest };
     let axes = machine.iter().map(|machine| machine.axes.along(&poses)).collect();
     Ok((Milled { plan, lattice, ways: vec![pass.way], poses: vec![poses], axes, machine }, told))
 }

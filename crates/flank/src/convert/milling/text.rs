@@ -9,6 +9,9 @@ use super::result::{ClearanceKept, HeightLeft, HeightMap, MillResult, VerifiedPr
 use super::side::SideLeft;
 use crate::project::units;
 
+/// Heights below this, um, are rounding: positions are some 100 mm long.
+const MEANT: f64 = 1e-6;
+
 impl fmt::Display for MillResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}\n", self.heading())?;
@@ -101,8 +104,10 @@ fn of_map(map: &HeightMap) -> Vec<(&'static str, String)> {
     facts
 }
 
+/// Of what is rounding no place is told.
 pub(super) fn at(left: &HeightLeft) -> String {
-    format!("{} um, at {}", fixed(left.height_um, 4), left.place)
+    let height = fixed(left.height_um, 4);
+    if left.height_um.abs() < MEANT { format!("{height} um") } else { format!("{height} um, at {}", left.place) }
 }
 
 fn deep(left: &HeightLeft) -> HeightLeft {
