@@ -1,5 +1,7 @@
 //! A piece of a tool's surface: cells that are nearly flat, and the foot of a point on it.
 
+use std::sync::Arc;
+
 use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
@@ -40,11 +42,11 @@ pub(super) struct Piece {
     tape: PlaceTape,
     ranges: [Range; 2],
     steps: [f64; 2],
-    cells: Vec<Cell>,
+    cells: Arc<[Cell]>,
     /// The cells in an order in which neighbours are near each other.
-    order: Vec<u32>,
+    order: Arc<[u32]>,
     /// All of them, halved again and again; a part comes before its halves, the first of which follows it.
-    parts: Vec<Part>,
+    parts: Arc<[Part]>,
     /// The least and the greatest coordinates of its cells.
     hull: [Vector3<f64>; 2],
 }
@@ -154,19 +156,20 @@ impl Piece {
             tape,
             ranges,
             steps: [0.0; 2],
-            cells: Vec::new(),
-            order: Vec::new(),
-            parts: Vec::new(),
+            cells: Arc::default(),
+            order: Arc::default(),
+            parts: Arc::default(),
             hull: [Vector3::zeros(); 2],
         };
         let (cells, steps) = piece.seen().cells();
-        piece.order = (0..cells.len() as u32).collect();
-        divide(&cells, (&mut piece.order, 0), &mut piece.parts);
+        let (mut order, mut parts): (Vec<u32>, Vec<Part>) = ((0..cells.len() as u32).collect(), Vec::new());
+        divide(&cells, (&mut order, 0), &mut parts);
         let reach = |cell: &Cell| cell.halves[0].abs() + cell.halves[1].abs() + Vector3::repeat(cell.sagitta);
         let low = cells.iter().map(|cell| cell.ball.center - reach(cell)).reduce(|a, b| a.inf(&b));
         let high = cells.iter().map(|cell| cell.ball.center + reach(cell)).reduce(|a, b| a.sup(&b));
         piece.hull = [low, high].map(Option::unwrap_or_default);
-        (piece.cells, piece.steps) = (cells, steps);
+        (piece.cells, piece.steps) = (cells.into(), steps);
+        (piece.order, piece.parts) = (order.into(), parts.into());
         piece
     }
 
@@ -176,7 +179,8 @@ impl Piece {
         if self.tape.uses_settings() {
             Piece::of_tape(self.number, tape, self.ranges)
         } else {
-            Piece { tape, ..self.clone() }
+            let (cells, order, parts) = (self.cells.clone(), self.order.clone(), self.parts.clone());
+            Piece { tape, cells, order, parts, ..*self }
         }
     }
 
