@@ -172,7 +172,8 @@ pub(crate) fn solved<'g>(
     (coordinates, targets, counts): (&[Coordinate<'g>; 2], &[[f64; 2]], [usize; 2]),
     session: Session,
 ) -> (Vec<SurfacePoint>, Option<NotDone>) {
-    let problem = problem(of.job, of.surface, coordinates.each_ref().map(|coordinate| coordinate.value), session);
+    let problem =
+        problem(of.job, of.surface, coordinates.each_ref().map(|coordinate| coordinate.value), session).points_alone();
     let (points, effort) = problem.solve(targets, counts);
     let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
     let told = is_ambiguous.then(|| {

@@ -57,7 +57,7 @@ pub fn contact(
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of_compilation(&compilation);
-    let session = Session::new(request.evaluator, monitor);
+    let session = Session::new(request.evaluator, monitor).with_points_alone();
     for (job, contact) in asked(&jobs, request)? {
         let result = of_contact(job, contact, request, &origin, session)?;
         each(ContactResult { timing: Timing { points: result.timing.points, elapsed: start.elapsed() }, ..result });

@@ -29,16 +29,27 @@ pub(crate) struct Session<'m> {
     options: EvaluatorOptions,
     monitor: &'m dyn Monitor,
     known: Option<&'m KnownSamples>,
+    tells_others: bool,
 }
 
 impl<'m> Session<'m> {
     pub(crate) fn new(options: EvaluatorOptions, monitor: &'m dyn Monitor) -> Session<'m> {
-        Session { options, monitor, known: None }
+        Session { options, monitor, known: None, tells_others: true }
     }
 
     /// The same where samples are solved once, by whoever comes first: of one compilation, whose surfaces do not change.
     pub(crate) fn with_known(self, known: &'m KnownSamples) -> Session<'m> {
         Session { known: Some(known), ..self }
+    }
+
+    /// The same where nothing is told of further branches, which are not looked for then.
+    pub(crate) fn with_points_alone(self) -> Session<'m> {
+        Session { tells_others: false, ..self }
+    }
+
+    /// Whether further branches are told of.
+    pub(crate) fn tells_others(self) -> bool {
+        self.tells_others
     }
 
     /// What is asked of the sample of a surface.

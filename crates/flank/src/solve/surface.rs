@@ -70,9 +70,10 @@ pub(super) fn on_any_branch<'g>(
     coordinates: [Expr<'g>; 2],
     session: Session,
 ) -> SurfaceProblem {
-    SurfaceProblem::new(&bound(job, surface), coordinates)
+    let problem = SurfaceProblem::new(&bound(job, surface), coordinates)
         .expect("a job without errors leaves nothing unbound")
         .following_beyond(followed(surface))
         .with_instruction_set(session.instructions())
-        .boxes(session.boxes())
+        .boxes(session.boxes());
+    if session.tells_others() { problem } else { problem.points_alone() }
 }

@@ -106,7 +106,7 @@ impl<'j, 'g> Tested<'j, 'g> {
             return (sample, known.clone());
         }
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-        let problem = solve::problem(self.job, surface, coordinates, self.session);
+        let problem = solve::problem(self.job, surface, coordinates, self.session).points_alone();
         let (points, _) = problem.solve(&at, [1, at.len()]);
         self.lists.borrow_mut().push((index, at, points.clone()));
         (sample, points)

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use flank_chain_dsl::{ContactNumber, DeviationNumber, Job, PointSet, Quantity, SolidNumber};
+use flank_chain_dsl::{ContactNumber, DeviationNumber, Expected, Job, PointSet, Quantity, SolidNumber};
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
 use flank_solver::Body;
 
@@ -97,11 +97,26 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         };
         let Some((rolling, _)) = &rolled.found else { return Ok(Ok(Arc::new(rolled.result))) };
         let none = vec![0.0; contact.errors.len()];
-        let backlash = summary::backlash(job, &rolled.members, &request, &none, rolling, session)?;
-        let rooms = interference::of_spaces(job, &rolled.members, &none, rolling, session)?;
         let mut result = rolled.result;
-        (result.backlash, result.clearances) = (backlash, rooms.clearances);
+        if self.is_asked(index, |number| matches!(number, ContactNumber::Backlash | ContactNumber::NormalBacklash)) {
+            result.backlash = summary::backlash(job, &rolled.members, &request, &none, rolling, session)?;
+        }
+        if self.is_asked(index, |number| number == ContactNumber::Clearance) {
+            result.clearances = interference::of_spaces(job, &rolled.members, &none, rolling, session)?.clearances;
+        }
         Ok(Ok(Arc::new(result)))
+    }
+
+    /// Whether an expectation of the job is about such a number of a contact.
+    fn is_asked(&self, of: usize, is_meant: impl Fn(ContactNumber) -> bool) -> bool {
+        let is_one = |(_, quantity): &(Expr<'g>, Quantity<'g>)| match quantity {
+            Quantity::Contact { contact, number } => *contact == of && is_meant(*number),
+            _ => false,
+        };
+        self.tested.job.expectations.iter().any(|expectation| match &expectation.what {
+            Expected::Value { quantities, .. } => quantities.iter().any(is_one),
+            _ => false,
+        })
     }
 
     fn of_solid(&self, index: usize, number: SolidNumber) -> Result<Number, Failure> {

@@ -1,5 +1,8 @@
 //! One spec, tested.
 
+use std::cmp::Reverse;
+
+use flank_chain_dsl::limits::FILE_BYTES;
 use flank_chain_dsl::{Compilation, Expectation, Job, Request, Span, compile_request};
 use flank_expr::Graph;
 use rayon::prelude::*;
@@ -19,16 +22,30 @@ use crate::testing::request::TestRequest;
 use crate::testing::result::{TestResult, TestedExpectation, TestedItem, TestedSpec};
 use crate::testing::snapshot;
 
-/// Tests specs, as many at a time as there are threads. The result does not depend on how many these are.
+/// Tests specs, as many at a time as there are threads, those first that are likely to take longest. The result does not depend on how many
+/// threads there are.
 ///
 /// # Errors
 /// If the work is cancelled.
 pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResult, Failure> {
-    let tested = requests.par_iter().map(|request| {
+    let mut order: Vec<usize> = (0..requests.len()).collect();
+    order.sort_by_cached_key(|number| Reverse(size(&requests[*number])));
+    // one after the other in this order, whichever thread has time
+    let tested = order.into_iter().par_bridge().map(|number| {
         check(monitor)?;
-        test_spec(request, &Unwatched)
+        Ok((number, test_spec(&requests[number], &Unwatched)?))
     });
-    Ok(TestResult::of_specs(tested.collect::<Result<_, Failure>>()?))
+    let mut tested = tested.collect::<Result<Vec<(usize, TestedSpec)>, Failure>>()?;
+    tested.sort_by_key(|(number, _)| *number);
+    Ok(TestResult::of_specs(tested.into_iter().map(|(_, spec)| spec).collect()))
+}
+
+/// How much there is to do for a spec, as far as its text tells: bodies and contacts take longer than anything else.
+fn size(request: &TestRequest) -> [usize; 2] {
+    let (files, file) = (request.project.files(), request.project.file());
+    let text = files.real_path(file).and_then(|file| files.read(&file, FILE_BYTES.most)).unwrap_or_default();
+    let starts = |line: &&str| ["solid ", "contact "].iter().any(|word| line.trim_start().starts_with(word));
+    [text.lines().filter(starts).count(), text.len()]
 }
 
 /// Checks all that a spec expects, at few points of each sample.
@@ -58,6 +75,8 @@ pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedS
     // contacts, bodies and expectations ask for the same samples
     let known = KnownSamples::default();
     let session = Session::new(request.evaluator, monitor).with_known(&known);
+    // a snapshot says what the search for other branches took, too
+    let session = if snapshot::is_compared(request) { session } else { session.with_points_alone() };
     let which = JobSelection::all(project.clone());
     match tested(&graph, &compilation, (request, &which, session)) {
         Ok((items, snapshot)) => Ok(TestedSpec { items, snapshot, ..nothing }),
@@ -95,7 +114,7 @@ fn tested<'g>(
             expectations.push(verdict(compilation, expectation, judged(&known, &expectation.what)?));
         }
         items.push(TestedItem { name: job.name.clone(), expectations });
-        if request.snapshot || request.propose {
+        if snapshot::is_compared(request) {
             snapshots.push(of_job);
         }
     }

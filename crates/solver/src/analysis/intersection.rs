@@ -203,7 +203,8 @@ fn seeds(surface: &BoundSurface<'_>) -> Result<Vec<SurfacePoint>, TapeError> {
     let (unknowns, ranges) = (&surface.surface().unknowns, surface.ranges());
     let coordinates = [unknowns[0], unknowns[1]];
     // machine code does not pay for so few
-    let problem = SurfaceProblem::new(surface, coordinates)?.with_instruction_set(InstructionSet::widest());
+    let problem =
+        SurfaceProblem::new(surface, coordinates)?.points_alone().with_instruction_set(InstructionSet::widest());
     let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
     let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
     let (points, _) = problem.solve(&targets, [SEEDS; 2]);

@@ -27,6 +27,8 @@ pub(crate) struct Choice<'c> {
     /// What tells branches apart, if anything does.
     pub(crate) keep: Option<Keep<'c>>,
     pub(crate) several: Several,
+    /// Whether it is told of branches that have points beside those of a grid.
+    pub(crate) tells_others: bool,
     /// Boxes that are looked at, at all points together, before the search is given up.
     pub(crate) most_boxes: u64,
     /// Where a branch is followed beyond its ranges; nowhere if there is none.

@@ -37,6 +37,7 @@ pub fn solve_grid(
         roots: &roots,
         keep: None,
         several: Several::TakeWidest,
+        tells_others: true,
         most_boxes: MOST_BOXES_OF_ALL,
         reach: None,
         periodic: &[],

@@ -53,6 +53,9 @@ pub(crate) fn surveyed(grid: &mut Grid<'_>, solvers: &mut Solvers<'_>, choice: &
         return followed;
     }
     if followed.field.is_complete() {
+        if !choice.tells_others {
+            return followed;
+        }
         let field = &followed.field;
         let all: Vec<usize> = (0..field.len()).collect();
         // beyond its ranges, too, this branch may be complete
@@ -120,7 +123,8 @@ fn with_others(
     (mut followed, asked): (Followed, &[usize]),
     choice: &Choice<'_>,
 ) -> Followed {
-    if followed.field.outcome(0) == Some(Outcome::Ambiguous) {
+    let is_undecided = grid.effort.anchor != grid.target_at([0.5; 2]) && grid.effort.branches.len() == 1;
+    if followed.field.outcome(0) == Some(Outcome::Ambiguous) || !is_undecided && !choice.tells_others {
         return followed;
     }
     let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
@@ -158,7 +162,6 @@ fn with_others(
         }
     }
     let others = others.found;
-    let is_undecided = grid.effort.anchor != grid.target_at([0.5; 2]) && grid.effort.branches.len() == 1;
     if is_undecided && !others.is_empty() {
         grid.effort.places = vec![grid.effort.anchor];
         grid.effort.courses = vec![course(&followed.field)];

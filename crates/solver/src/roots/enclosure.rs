@@ -20,6 +20,10 @@ pub(crate) struct Enclosure<'s> {
     at_point: Vec<Interval>,
     /// Inverse of the Jacobian's middle, row by row.
     inverse: Vec<f64>,
+    /// Room for a matrix, for a row of slopes and for the terms of a sum.
+    matrix: Vec<f64>,
+    slopes: Vec<Interval>,
+    terms: Vec<Interval>,
 }
 
 /// What is left of a box.
@@ -62,6 +66,9 @@ impl<'s> Enclosure<'s> {
             outputs: vec![Interval::WHOLE; system.tape().output_count()],
             at_point: vec![Interval::WHOLE; size],
             inverse: vec![0.0; size * size],
+            matrix: Vec::new(),
+            slopes: Vec::new(),
+            terms: Vec::new(),
         }
     }
 
@@ -122,17 +129,17 @@ impl<'s> Enclosure<'s> {
         self.evaluate_point(&middle);
         let mut left = boxed.to_vec();
         for row in 0..n {
-            let slopes: Vec<Interval> = (0..n).map(|k| self.jacobian(row, k)).collect();
-            if !narrow(&mut left, &middle, self.at_point[row], &slopes, None) {
+            let slopes = &self.outputs[n * (1 + row)..][..n];
+            if !narrow(&mut left, &middle, (self.at_point[row], slopes), None, &mut self.terms) {
                 return Contraction::Empty;
             }
         }
         let mut regular = self.invert_middle();
         if regular {
             for row in 0..n {
-                let (value, slopes) = self.preconditioned(row);
-                regular &= !slopes[row].contains(0.0);
-                if !narrow(&mut left, &middle, value, &slopes, Some(row)) {
+                let value = self.preconditioned(row);
+                regular &= !self.slopes[row].contains(0.0);
+                if !narrow(&mut left, &middle, (value, &self.slopes), Some(row), &mut self.terms) {
                     return Contraction::Empty;
                 }
             }
@@ -154,7 +161,8 @@ impl<'s> Enclosure<'s> {
         self.evaluate_point(point);
         let mut exists = true;
         for row in 0..n {
-            let (value, slopes) = self.preconditioned(row);
+            let value = self.preconditioned(row);
+            let slopes = &self.slopes;
             let off = |k: usize| if k == row { Interval::point(1.0) - slopes[k] } else { slopes[k] };
             let radius = |k: usize| Interval::point(radii[k]);
             let wander =
@@ -190,27 +198,32 @@ impl<'s> Enclosure<'s> {
             return None;
         }
         self.at_point.copy_from_slice(&self.outputs[..self.size]);
-        Some((0..self.size).map(|row| self.preconditioned(row).0.magnitude()).collect())
+        Some((0..self.size).map(|row| self.preconditioned(row).magnitude()).collect())
     }
 
-    /// A row of Y F at the point and of Y J on the box.
-    fn preconditioned(&self, row: usize) -> (Interval, Vec<Interval>) {
+    /// A row of Y F at the point; the same of Y J on the box is put into `slopes`.
+    fn preconditioned(&mut self, row: usize) -> Interval {
         let n = self.size;
-        let weights: Vec<Interval> = (0..n).map(|i| Interval::point(self.inverse[row * n + i])).collect();
-        let sum = |of: &dyn Fn(usize) -> Interval| (0..n).fold(Interval::point(0.0), |sum, i| sum + weights[i] * of(i));
-        let value = sum(&|i| self.at_point[i]);
-        (value, (0..n).map(|k| sum(&|i| self.jacobian(i, k))).collect())
+        let weights = &self.inverse[row * n..][..n];
+        let sum = |of: &mut dyn Iterator<Item = &Interval>| {
+            weights.iter().zip(of).fold(Interval::point(0.0), |sum, (weight, x)| sum + Interval::point(*weight) * *x)
+        };
+        let columns = (0..n).map(|k| sum(&mut self.outputs[n + k..].iter().step_by(n)));
+        self.slopes.clear();
+        self.slopes.extend(columns);
+        sum(&mut self.at_point.iter())
     }
 
     /// Puts the inverse of the Jacobian's middle into `inverse`; whether there is one.
     fn invert_middle(&mut self) -> bool {
         let n = self.size;
-        let mut matrix: Vec<f64> = (0..n * n).map(|k| self.outputs[n + k].middle()).collect();
+        self.matrix.clear();
+        self.matrix.extend(self.outputs[n..n + n * n].iter().map(|slope| slope.middle()));
         self.inverse.fill(0.0);
         for k in 0..n {
             self.inverse[k * n + k] = 1.0;
         }
-        eliminate(&mut matrix, &mut self.inverse, n)
+        eliminate(&mut self.matrix, &mut self.inverse, n)
     }
 }
 
@@ -226,9 +239,16 @@ pub(crate) fn box_of(ranges: &[Range]) -> Vec<Interval> {
 }
 
 /// Solves `value + Σ slopes (x − middle) = 0` for each unknown (or `only` one) in turn; whether anything is left.
-fn narrow(left: &mut [Interval], middle: &[f64], value: Interval, slopes: &[Interval], only: Option<usize>) -> bool {
-    let shifts: Vec<Interval> = left.iter().zip(middle).map(|(x, m)| *x - Interval::point(*m)).collect();
-    let terms: Vec<Interval> = slopes.iter().zip(&shifts).map(|(slope, shift)| *slope * *shift).collect();
+fn narrow(
+    left: &mut [Interval],
+    middle: &[f64],
+    (value, slopes): (Interval, &[Interval]),
+    only: Option<usize>,
+    terms: &mut Vec<Interval>,
+) -> bool {
+    let shifts = left.iter().zip(middle).map(|(x, m)| *x - Interval::point(*m));
+    terms.clear();
+    terms.extend(slopes.iter().zip(shifts).map(|(slope, shift)| *slope * shift));
     if !terms.iter().fold(value, |sum, term| sum + *term).contains(0.0) {
         return false;
     }

@@ -93,6 +93,19 @@ impl Chart {
         ]
     }
 
+    /// The same on a lattice of shares, for each share along all those across.
+    pub(crate) fn frames(&self, across: &[f64], along: &[f64]) -> Vec<[[f64; 3]; 3]> {
+        let across: Vec<Basis> = across.iter().map(|u| Basis::at(self.counts[0], *u)).collect();
+        let of_line = |w: &f64| {
+            let Basis { values, slopes } = Basis::at(self.counts[1], *w);
+            let [rows, sloping] = [values, slopes].map(|w| (0..self.counts[0]).map(|i| self.in_row(i, &w)).collect());
+            let sum = |u: &[f64], rows: &Vec<[f64; 3]>| weighted(u.iter().copied().zip(rows.iter().copied()));
+            let frame = |u: &Basis| [sum(&u.values, &rows), sum(&u.slopes, &rows), sum(&u.values, &sloping)];
+            across.iter().map(frame).collect::<Vec<_>>()
+        };
+        along.iter().flat_map(of_line).collect()
+    }
+
     /// Positions on a lattice of shares, row by row, mm.
     pub fn lattice(&self, across: &[f64], along: &[f64]) -> Vec<[f64; 3]> {
         let along: Vec<Vec<f64>> = along.iter().map(|w| Basis::at(self.counts[1], *w).values).collect();
@@ -132,9 +145,12 @@ impl Chart {
     }
 
     fn summed(&self, [u, w]: [Vec<f64>; 2]) -> [f64; 3] {
-        let columns = self.counts[1];
-        let row = |i: usize| weighted(w.iter().copied().zip(self.points[i * columns..].iter().copied()));
-        weighted(u.iter().enumerate().map(|(i, weight)| (*weight, row(i))))
+        weighted(u.iter().enumerate().map(|(i, weight)| (*weight, self.in_row(i, &w))))
+    }
+
+    /// The sum over a row.
+    fn in_row(&self, row: usize, w: &[f64]) -> [f64; 3] {
+        weighted(w.iter().copied().zip(self.points[row * self.counts[1]..].iter().copied()))
     }
 }
 

@@ -72,10 +72,11 @@ impl Body {
             }
         };
         let walls = self.walls(space);
+        let frames: Vec<_> = self.spaces[space].iter().map(|chart| chart.frames(&shares, &shares)).collect();
         for (j, (along, by_along)) in nodes.iter().enumerate() {
-            for (k, chart) in self.spaces[space].iter().enumerate() {
-                for (i, (across, by_across)) in nodes.iter().enumerate() {
-                    let [at, by_u, by_w] = chart.frame([*across, *along]);
+            for (k, frames) in frames.iter().enumerate() {
+                for (i, (_, by_across)) in nodes.iter().enumerate() {
+                    let [at, by_u, by_w] = frames[j * NODES + i];
                     let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
                     area += normal.norm();
                     add(at, normal, lines[j][k * NODES + i][2]);

@@ -61,6 +61,7 @@ pub struct SurfaceProblem {
     at_once: usize,
     /// Boxes that a search for all roots looks at.
     most_boxes: u64,
+    tells_others: bool,
 }
 
 impl SurfaceProblem {
@@ -153,6 +154,7 @@ impl SurfaceProblem {
             several,
             at_once: MOST_AT_ONCE,
             most_boxes: MOST_BOXES,
+            tells_others: true,
             keep: kept_by(&[], &bound.unknowns, Vec::new())?,
         })
     }
@@ -174,6 +176,12 @@ impl SurfaceProblem {
         SurfaceProblem { most_boxes: most, ..self }
     }
 
+    /// The same problem, where nothing but points is asked for: further branches, which [`GridReport::elsewhere`] tells of otherwise, are
+    /// not looked for unless the points depend on whether there are any.
+    pub fn points_alone(self) -> SurfaceProblem {
+        SurfaceProblem { tells_others: false, ..self }
+    }
+
     /// The same problem with other numbers for the settings of its tapes.
     pub(crate) fn with_settings(&self, values: &[f64]) -> SurfaceProblem {
         SurfaceProblem {
@@ -190,6 +198,7 @@ impl SurfaceProblem {
             reach: self.reach.clone(),
             at_once: self.at_once,
             most_boxes: self.most_boxes,
+            tells_others: self.tells_others,
         }
     }
 
@@ -365,6 +374,7 @@ impl SurfaceProblem {
             // on a singular line there is none
             planes: Some(planes).filter(|_| self.several == Several::Refuse),
             several: self.several,
+            tells_others: self.tells_others,
             most_boxes: if self.is_line() { MOST_BOXES_OF_WHOLE_LINE } else { BOXES_OF_ALL * self.most_boxes },
             reach: self.reach.as_ref(),
             periodic: &self.periodic,

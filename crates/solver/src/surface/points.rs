@@ -75,12 +75,31 @@ impl SurfacePoints {
         self.field.residual(point)
     }
 
+    /// All of that for all points, in the memory of others that are not needed any more.
+    pub fn write_to(&self, points: &mut Vec<SurfacePoint>) {
+        points.truncate(self.len());
+        for (number, point) in points.iter_mut().enumerate() {
+            let mut unknowns = std::mem::take(&mut point.unknowns);
+            unknowns.clear();
+            match self.field.outcome(number) {
+                Some(_) => unknowns.extend(self.field.unknowns(number)),
+                None => unknowns.extend(&self.middle),
+            }
+            *point = self.placed(number, unknowns);
+        }
+        points.extend((points.len()..self.len()).map(|number| self.point(number)));
+    }
+
     /// All of that for one point.
     pub fn point(&self, point: usize) -> SurfacePoint {
+        self.placed(point, self.unknowns(point))
+    }
+
+    fn placed(&self, point: usize, unknowns: Vec<f64>) -> SurfacePoint {
         let [x, y, z, nx, ny, nz] = self.position_and_normal(point);
         SurfacePoint {
             outcome: self.outcome(point),
-            unknowns: self.unknowns(point),
+            unknowns,
             position: [x, y, z],
             normal: [nx, ny, nz],
             residual: self.residual(point),

@@ -39,7 +39,7 @@ pub fn mesh(request: &MeshRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(M
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of_compilation(&compilation);
-    let session = Session::new(request.evaluator, monitor);
+    let session = Session::new(request.evaluator, monitor).with_points_alone();
     for job in space::with_solids(&jobs)? {
         each(meshed(job, (request, &origin), session)?);
     }

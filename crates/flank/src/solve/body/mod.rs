@@ -39,7 +39,7 @@ pub fn solid(request: &SolidRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     let origin = Origin::of_compilation(&compilation);
-    let session = Session::new(request.evaluator, monitor);
+    let session = Session::new(request.evaluator, monitor).with_points_alone();
     for job in space::with_solids(&jobs)? {
         each(built(job, (request, &origin), session)?);
     }

@@ -23,22 +23,25 @@ fn beside(spec: &Path) -> PathBuf {
     spec.with_extension("snapshot")
 }
 
+/// Whether a spec is compared with its snapshot, or would be if it had one that is proposed.
+pub(super) fn is_compared(request: &TestRequest) -> bool {
+    let is_asked = request.filter.is_none() && (request.snapshot || request.propose);
+    is_asked && (request.propose || request.project.files().exists(&beside(request.project.file())))
+}
+
 /// What differs from the snapshot of a spec; nothing if it has none, unless one is proposed. What is filtered is not compared: a snapshot
 /// is one of all jobs.
 ///
 /// # Errors
 /// If the snapshot cannot be read, or is no longer what the program wrote.
 pub(super) fn compared(request: &TestRequest, jobs: &[Tested<'_, '_>]) -> Result<Option<TestedSnapshot>, Failure> {
-    if request.filter.is_some() || !(request.snapshot || request.propose) {
+    if !is_compared(request) {
         return Ok(None);
     }
     let path = beside(request.project.file());
     let files = request.project.files();
     let file = shown_path(&path);
     let is_there = files.exists(&path);
-    if !is_there && !request.propose {
-        return Ok(None);
-    }
     let now: Vec<KeptSurface> = jobs.iter().flat_map(kept).collect();
     let text = text::written(&shown_path(Path::new(path.file_stem().unwrap_or_default())), &now);
     if !is_there {

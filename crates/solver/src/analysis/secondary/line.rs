@@ -163,8 +163,9 @@ impl Piece {
                 other.map_or([0.0; 2], |other| [other.speed, (other.motion - place.motion).abs()])
             };
             let ([a, since], [b, until]) = (to(last), to(next));
-            let is_far = self.least(&place.point) > LONGER * place.speed.max(a).max(b) * since.max(until);
-            let near = if is_far { None } else { self.near(&place.point, before.as_ref()) };
+            let most = LONGER * place.speed.max(a).max(b) * since.max(until);
+            let is_far = self.least(&place.point) > most;
+            let near = if is_far { None } else { self.near(&place.point, most, before.as_ref()) };
             before = near.or(before);
             near.map(|near| Sight { place: *place, near, found: None })
         };
@@ -200,15 +201,13 @@ impl Way<'_, '_> {
         deepest
     }
 
-    fn sight(&self, place: Place) -> Option<Sight> {
-        self.seen.piece.near(&place.point, None).map(|near| Sight { place, near, found: None })
-    }
-
-    fn sight_at(&mut self, motion: f64) -> Option<Sight> {
+    /// The place at another value of the motion, not far from one that was seen.
+    fn sight_at(&mut self, motion: f64, other: &Sight) -> Option<Sight> {
         let own = std::mem::replace(&mut self.motions[self.running], motion);
         let place = self.poses.at(&self.motions, self.running).place(motion, &self.point);
         self.motions[self.running] = own;
-        self.sight(place)
+        let near = self.seen.piece.near(&place.point, f64::INFINITY, Some(&other.near))?;
+        Some(Sight { place, near, found: None })
     }
 
     /// The foot of a place on the piece or a little beyond it, and on which side of the piece it lies, if that is known.
@@ -270,7 +269,7 @@ impl Way<'_, '_> {
         if halvings >= MOST_HALVINGS {
             return None;
         }
-        let mut middle = self.sight_at(0.5 * (a.place.motion + b.place.motion))?;
+        let mut middle = self.sight_at(0.5 * (a.place.motion + b.place.motion), a)?;
         self.between(a, &mut middle, halvings + 1).or_else(|| self.between(&mut middle, b, halvings + 1))
     }
 
@@ -279,7 +278,7 @@ impl Way<'_, '_> {
     fn beside(&mut self, contact: &Sight, other: &Sight, halvings: u32) -> Option<Cut> {
         let mut far = *other;
         for halving in halvings..MOST_HALVINGS {
-            let mut middle = self.sight_at(0.5 * (contact.place.motion + far.place.motion))?;
+            let mut middle = self.sight_at(0.5 * (contact.place.motion + far.place.motion), &far)?;
             let (Some(near_foot), Some(far_foot)) = (self.foot(&mut middle).0, self.foot(&mut far).0) else {
                 return self.ordered(&mut { *contact }, &mut middle, halving + 1);
             };
@@ -315,7 +314,7 @@ impl Way<'_, '_> {
         let mut step = if foot.rate(sight.place.velocity) > 0.0 { -0.5 * span } else { 0.5 * span };
         for _ in 0..STEPS_DOWN {
             let next = (motion + step).clamp(range.low, range.high);
-            match self.sight_at(next).map(|mut sight| self.foot(&mut sight)) {
+            match self.sight_at(next, &sight).map(|mut sight| self.foot(&mut sight)) {
                 Some((Some(foot), Some([0, 0]))) if -foot.clearance > depth => {
                     depth = -foot.clearance;
                     motion = next;

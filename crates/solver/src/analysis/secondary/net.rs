@@ -1,5 +1,7 @@
 //! A piece of a tool's surface: cells that are nearly flat, and the foot of a point on it.
 
+use std::sync::Arc;
+
 use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
@@ -18,6 +20,11 @@ const MOST_CELLS: usize = 192;
 const BETWEEN: f64 = 1.25;
 /// Cells that are looked at together.
 const BLOCK: usize = 8;
+/// By so little, as a share of where it lies and how large it is, a ball is made larger than its numbers say, so that their rounding
+/// leaves no cell out.
+const ROUNDED: f64 = 1e-12;
+/// Parts that wait to be looked at, at the most: one for each time that as many cells as there are can be halved.
+const MOST_WAITING: usize = 32;
 /// The foot is found when the next step along the surface is shorter, mm: what it misses then is its square over the radius of
 /// curvature.
 const STILL: f64 = 1e-7;
@@ -35,8 +42,11 @@ pub(super) struct Piece {
     tape: PlaceTape,
     ranges: [Range; 2],
     steps: [f64; 2],
-    cells: Vec<Cell>,
-    blocks: Vec<Ball>,
+    cells: Arc<[Cell]>,
+    /// The cells in an order in which neighbours are near each other.
+    order: Arc<[u32]>,
+    /// All of them, halved again and again; a part comes before its halves, the first of which follows it.
+    parts: Arc<[Part]>,
     /// The least and the greatest coordinates of its cells.
     hull: [Vector3<f64>; 2],
 }
@@ -46,6 +56,15 @@ pub(super) struct Piece {
 struct Ball {
     center: Vector3<f64>,
     radius: f64,
+}
+
+/// Some cells, where they stand in the order.
+#[derive(Clone, Debug)]
+struct Part {
+    ball: Ball,
+    cells: [u32; 2],
+    /// Where its second half stands, if it has halves.
+    second: Option<u32>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -137,17 +156,20 @@ impl Piece {
             tape,
             ranges,
             steps: [0.0; 2],
-            cells: Vec::new(),
-            blocks: Vec::new(),
+            cells: Arc::default(),
+            order: Arc::default(),
+            parts: Arc::default(),
             hull: [Vector3::zeros(); 2],
         };
         let (cells, steps) = piece.seen().cells();
-        let blocks = cells.chunks(BLOCK).map(Ball::around).collect();
+        let (mut order, mut parts): (Vec<u32>, Vec<Part>) = ((0..cells.len() as u32).collect(), Vec::new());
+        divide(&cells, (&mut order, 0), &mut parts);
         let reach = |cell: &Cell| cell.halves[0].abs() + cell.halves[1].abs() + Vector3::repeat(cell.sagitta);
         let low = cells.iter().map(|cell| cell.ball.center - reach(cell)).reduce(|a, b| a.inf(&b));
         let high = cells.iter().map(|cell| cell.ball.center + reach(cell)).reduce(|a, b| a.sup(&b));
         piece.hull = [low, high].map(Option::unwrap_or_default);
-        (piece.cells, piece.steps, piece.blocks) = (cells, steps, blocks);
+        (piece.cells, piece.steps) = (cells.into(), steps);
+        (piece.order, piece.parts) = (order.into(), parts.into());
         piece
     }
 
@@ -157,7 +179,8 @@ impl Piece {
         if self.tape.uses_settings() {
             Piece::of_tape(self.number, tape, self.ranges)
         } else {
-            Piece { tape, ..self.clone() }
+            let (cells, order, parts) = (self.cells.clone(), self.order.clone(), self.parts.clone());
+            Piece { tape, cells, order, parts, ..*self }
         }
     }
 
@@ -175,27 +198,42 @@ impl Piece {
         (low - point).sup(&(point - high)).sup(&Vector3::zeros()).norm()
     }
 
-    /// The cell that a point is nearest to; `None` if the piece has no cells. What another point that is not far from it is near is looked
-    /// at first.
-    pub(super) fn near(&self, point: &Vector3<f64>, other: Option<&Near>) -> Option<Near> {
-        let first = other.map_or(0, |other| other.cell);
-        let mut best = self.cells.get(first)?.near(point, self.steps, first);
-        for (number, block) in self.blocks.iter().enumerate() {
-            if (point - block.center).norm() - block.radius >= best.least {
+    /// The cell that a point is nearest to, of several the first; `None` if no cell is within a distance, mm. What another point that is not
+    /// far from it is near is looked at first.
+    pub(super) fn near(&self, point: &Vector3<f64>, within: f64, other: Option<&Near>) -> Option<Near> {
+        let mut best: Option<Near> = None;
+        let mut look_at = |number: usize, most: f64| {
+            let near = self.cells[number].near(point, self.steps, number);
+            let is_nearer = near.least < most || near.least == most && best.is_none_or(|best| number < best.cell);
+            best = if is_nearer { Some(near) } else { best };
+            if is_nearer { near.least } else { most }
+        };
+        let mut most = other.map_or(within, |other| look_at(other.cell, within));
+        let mut waiting = [(0, 0.0); MOST_WAITING];
+        let mut count = usize::from(!self.parts.is_empty());
+        while count > 0 {
+            count -= 1;
+            let (at, least) = waiting[count];
+            if least > most {
                 continue;
             }
-            let from = number * BLOCK;
-            for (cell, number) in self.cells[from..].iter().take(BLOCK).zip(from..) {
-                if (point - cell.ball.center).norm() - cell.ball.radius >= best.least {
-                    continue;
+            let Part { cells: [from, to], second, .. } = self.parts[at];
+            if let Some(second) = second {
+                let mut halves = [at + 1, second as usize].map(|half| (half, self.parts[half].ball.least(point)));
+                if halves[0].1 < halves[1].1 {
+                    halves.swap(0, 1);
                 }
-                let near = cell.near(point, self.steps, number);
-                if near.least < best.least {
-                    best = near;
+                waiting[count..count + 2].copy_from_slice(&halves);
+                count += 2;
+                continue;
+            }
+            for &number in &self.order[from as usize..to as usize] {
+                if self.cells[number as usize].ball.least(point) <= most {
+                    most = look_at(number as usize, most);
                 }
             }
         }
-        Some(best)
+        best
     }
 
     /// Whether two places on the piece are no farther apart than neighbouring cells.
@@ -242,11 +280,42 @@ impl Cell {
 }
 
 impl Ball {
-    fn around(cells: &[Cell]) -> Ball {
-        let center = cells.iter().map(|cell| cell.ball.center).sum::<Vector3<f64>>() / cells.len() as f64;
+    fn around<'c>(cells: impl ExactSizeIterator<Item = &'c Cell> + Clone) -> Ball {
+        let count = cells.len() as f64;
+        let center = cells.clone().map(|cell| cell.ball.center).sum::<Vector3<f64>>() / count;
         let reach = |cell: &Cell| (cell.ball.center - center).norm() + cell.ball.radius;
-        Ball { center, radius: cells.iter().map(reach).fold(0.0, f64::max) }
+        let radius = cells.map(reach).fold(0.0, f64::max);
+        Ball { center, radius: radius + ROUNDED * (radius + center.norm()) }
     }
+
+    /// How near a point is to it at the least, negative within it.
+    fn least(&self, point: &Vector3<f64>) -> f64 {
+        (point - self.center).norm() - self.radius
+    }
+}
+
+/// Halves some cells, which stand in the order from a place on, across the direction in which they reach farthest, until few are left in
+/// each part.
+fn divide(cells: &[Cell], (order, from): (&mut [u32], u32), parts: &mut Vec<Part>) {
+    if order.is_empty() {
+        return;
+    }
+    let own = order.iter().map(|number| &cells[*number as usize]);
+    let (at, count) = (parts.len(), order.len());
+    parts.push(Part { ball: Ball::around(own.clone()), cells: [from, from + count as u32], second: None });
+    if count <= BLOCK {
+        return;
+    }
+    let centers = || own.clone().map(|cell| cell.ball.center);
+    let low = centers().reduce(|a, b| a.inf(&b)).unwrap_or_default();
+    let high = centers().reduce(|a, b| a.sup(&b)).unwrap_or_default();
+    let along = (high - low).imax();
+    let place = |number: u32| cells[number as usize].ball.center[along];
+    order.select_nth_unstable_by(count / 2, |a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
+    let (first, second) = order.split_at_mut(count / 2);
+    divide(cells, (first, from), parts);
+    parts[at].second = Some(parts.len() as u32);
+    divide(cells, (second, from + count as u32 / 2), parts);
 }
 
 impl Seen<'_> {
@@ -485,7 +554,7 @@ mod tests {
         for (k, on) in places.iter().enumerate() {
             let point = on + Vector3::new(-7.0, 4.0, 1.5) * (k % 3) as f64;
             let distance = places.iter().map(|place| (place - point).norm()).fold(f64::INFINITY, f64::min);
-            let least = piece.near(&point, None).expect("cells").least;
+            let least = piece.near(&point, f64::INFINITY, None).expect("cells").least;
             assert!(least <= distance, "{point}: {least} mm, but {distance} mm");
         }
     }

@@ -87,6 +87,7 @@ mod tests {
             roots: &roots,
             keep: None,
             several: Several::Refuse,
+            tells_others: true,
             most_boxes: MOST_BOXES,
             reach: None,
             periodic: &[],

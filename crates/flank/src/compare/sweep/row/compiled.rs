@@ -154,6 +154,8 @@ impl Compiled {
         let kept = self.kept.iter().flatten().map(|k| case.points(*k).map(<[SurfacePoint]>::to_vec));
         let kept: Vec<Vec<SurfacePoint>> = kept.collect::<Result<_, _>>()?;
         let found = Found::of_numbers(numbers, why, case.is_followed);
+        let CaseNumbers { points, .. } = case;
+        self.samples.iter().zip(points).for_each(|(of, points)| points.into_iter().for_each(|own| of.take_back(own)));
         Ok(Some(found.with_points(self.kept.is_some().then_some(kept))))
     }
 }

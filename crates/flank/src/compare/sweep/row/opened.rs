@@ -1,8 +1,12 @@
 //! What is compiled of a job while settings are open.
 
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
 use flank_chain_dsl::{Coordinate, GeneratedSurface, Job, Parameter, Solid};
 use flank_expr::{Expr, Graph};
-use flank_solver::{BoundSurface, Deviation, Outcome, SecondaryCutting, SurfaceFamily, SurfaceGeometry, SurfacePoint};
+use flank_solver::{
+    BoundSurface, Deviation, Outcome, SecondaryCutting, SurfaceFamily, SurfaceGeometry, SurfacePoint, SurfacePoints,
+};
 
 use super::super::inputs::StudyInput;
 use super::collected::{Collected, sample_of};
@@ -41,6 +45,15 @@ pub(super) struct Sampled {
     nominal: Vec<Outcome>,
     tool: Option<SecondaryCutting>,
     blank: Option<Solid>,
+    /// Of cases that are done: the next ones take it.
+    memory: Mutex<Memory>,
+}
+
+/// What nobody needs any more, as many of each as there were cases at the same time.
+#[derive(Default)]
+struct Memory {
+    solved: Vec<SurfacePoints>,
+    points: Vec<Vec<SurfacePoint>>,
 }
 
 impl<'o, 'g> Opened<'o, 'g> {
@@ -135,8 +148,17 @@ impl<'o, 'g> Opened<'o, 'g> {
         });
         let family = family.expect("a job without errors leaves nothing unbound");
         let counts = [1, targets.len()];
-        Sampled { family, targets, counts, start: None, nominal: Vec::new(), tool: None, blank: None }
-            .begun(&self.nominal())
+        Sampled {
+            family,
+            targets,
+            counts,
+            start: None,
+            nominal: Vec::new(),
+            tool: None,
+            blank: None,
+            memory: Mutex::default(),
+        }
+        .begun(&self.nominal())
     }
 
     /// Points at values of two coordinates, whatever else cuts some of them away.
@@ -148,7 +170,16 @@ impl<'o, 'g> Opened<'o, 'g> {
     ) -> Sampled {
         let coordinates = coordinates.each_ref().map(|coordinate| coordinate.value);
         let family = solve::family(surface, coordinates, (&self.settings, self.bindings), self.session);
-        Sampled { family, targets, counts, start: None, nominal: Vec::new(), tool: None, blank: None }
+        Sampled {
+            family,
+            targets,
+            counts,
+            start: None,
+            nominal: Vec::new(),
+            tool: None,
+            blank: None,
+            memory: Mutex::default(),
+        }
     }
 
     /// The points of a surface beside those of another one.
@@ -253,9 +284,21 @@ impl Sampled {
         self.solved(values, None)
     }
 
+    /// Takes the memory of points that are not needed any more.
+    pub(super) fn take_back(&self, points: Vec<SurfacePoint>) {
+        self.memory().points.push(points);
+    }
+
+    fn memory(&self) -> MutexGuard<'_, Memory> {
+        self.memory.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     fn solved(&self, values: &[f64], start: Option<&[f64]>) -> Vec<SurfacePoint> {
-        let (points, _) = self.family.at(values).solve_points(&self.targets, self.counts, start, None);
-        let mut points: Vec<SurfacePoint> = (0..points.len()).map(|k| points.point(k)).collect();
+        let memory = self.memory().solved.pop();
+        let (solved, _) = self.family.at(values).solve_points(&self.targets, self.counts, start, memory);
+        let mut points = self.memory().points.pop().unwrap_or_default();
+        solved.write_to(&mut points);
+        self.memory().solved.push(solved);
         if let Some(tool) = &self.tool {
             tool.with_settings(values).judge(&mut points, self.counts);
         }
