@@ -1,16 +1,17 @@
 //! Settings of a measured flank, of a wanted ease-off, and of a wanted contact: compiled, and with the points known.
 
 use divan::{Bencher, black_box};
-use flank_chain_dsl::{Job, Parameter};
+use flank_chain_dsl::{GeneratedSurface, Job, Parameter};
 use flank_expr::Graph;
 use flank_solver::{
-    AdjustableSurface, BoundSurface, ContactNumber, ContactProblem, ContactSynthesis, ContactWish, FlankCorners,
-    NearFoot, Outcome, Range, ScaledUnknown, SettingsAdjustment, SurfacePoint, WantedPoints,
+    AdjustableSurface, BoundSurface, ContactNumber, ContactProblem, ContactSynthesis, ContactWish, Deviation,
+    FlankCorners, NearFoot, Outcome, Range, ScaledUnknown, SearchEnd, SettingsAdjustment, SurfacePoint, WantedPoints,
 };
 use flank_tests::pairs::with_pair_in;
-use flank_tests::{job, problem, turned};
+use flank_tests::{bound, job, jobs, problem, turned};
 
 const PINION: &str = "specs/bevel/pinion_19x62.chain";
+const EASE_OFF: &str = "specs/bevel/ease_off_19x62.chain";
 const PAIR: &str = "specs/pairs/bevel_19x62.chain";
 /// Settings of a measured grid, with the changes that it was made with.
 const MEASURED: [(&str, f64, &str); 9] = [
@@ -23,6 +24,18 @@ const MEASURED: [(&str, f64, &str); 9] = [
     ("m.modified_roll_2c", 0.001, ""),
     ("m.helical_motion_1", 0.02, "mm"),
     ("c.blade_angle", 0.05, "deg"),
+];
+/// Settings of an ease-off.
+const OF_EASE_OFF: [&str; 9] = [
+    "m.radial_distance",
+    "m.work_offset",
+    "m.sliding_base",
+    "m.machine_center_to_crossing_point",
+    "m.ratio_of_roll",
+    "m.modified_roll_2c",
+    "m.modified_roll_6d",
+    "c.outside_point_radius",
+    "c.blade_angle",
 ];
 /// Settings of a contact.
 const OF_CONTACT: [&str; 6] = [
@@ -42,6 +55,10 @@ fn named<'j, 'g>(job: &'j Job<'g>, names: &[&str]) -> Vec<&'j Parameter<'g>> {
     names.iter().map(|name| job.parameters.iter().find(|of| of.name == *name).expect("a parameter")).collect()
 }
 
+fn concave<'j, 'g>(job: &'j Job<'g>) -> &'j GeneratedSurface<'g> {
+    job.surfaces.iter().find(|surface| surface.name == "concave").expect("a surface")
+}
+
 fn unknown(of: &Parameter<'_>) -> ScaledUnknown {
     let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
     let scale = if of.dimension == flank_chain_dsl::Dimension::LENGTH { 0.1 } else { 3e-3 };
@@ -50,7 +67,7 @@ fn unknown(of: &Parameter<'_>) -> ScaledUnknown {
 
 fn adjustable(job: &Job<'_>, names: &[&str]) -> AdjustableSurface {
     let open: Vec<_> = named(job, names).iter().map(|of| of.variable).collect();
-    let made = job.surfaces.iter().find(|surface| surface.name == "concave").expect("a surface");
+    let made = concave(job);
     let ranges = made.unknowns.iter().map(|of| Range { low: of.low, high: of.high }.beyond(0.0)).collect();
     AdjustableSurface::new(&BoundSurface::new(&made.surface, ranges, &job.bindings_beside(&open)), &open)
         .expect("all bound")
@@ -58,7 +75,7 @@ fn adjustable(job: &Job<'_>, names: &[&str]) -> AdjustableSurface {
 
 /// Rows and columns of the flank.
 fn points(job: &Job<'_>, [rows, columns]: [usize; 2]) -> Vec<SurfacePoint> {
-    let made = job.surfaces.iter().find(|surface| surface.name == "concave").expect("a surface");
+    let made = concave(job);
     let sample = made.sample.as_ref().expect("it is sampled");
     let (all, [own_rows, own]) = (sample.targets(), sample.counts);
     let spread = |k: usize, of: usize, count: usize| 1 + k * (count - 3) / (of - 1);
@@ -113,6 +130,61 @@ fn grid_5x9(bencher: Bencher) {
 #[divan::bench]
 fn map_13x29(bencher: Bencher) {
     fitted(bencher, [13, 29]);
+}
+
+/// Nine settings and the turn, with which the flank of the basic settings lies off the conjugate one by crownings of 50 and 25 um, from
+/// 25 x 45 points, to the end of the search.
+#[divan::bench]
+fn ease_off_25x45(bencher: Bencher) {
+    let graph = Graph::new();
+    let all = jobs(&graph, EASE_OFF, &[]);
+    let [basic, conjugate] =
+        ["basic", "conjugate"].map(|name| all.iter().find(|job| job.name == name).expect("it is there"));
+    let sample = concave(conjugate).sample.as_ref().expect("it is sampled");
+    let (targets, counts) = (sample.targets(), sample.counts);
+    let solved = |job: &Job<'_>| {
+        let made = concave(job);
+        let coordinates = made.sample.as_ref().expect("it is sampled").coordinates.each_ref().map(|of| of.value);
+        problem(job, made, coordinates).solve(&targets, counts).0
+    };
+    let (from, near) = (solved(conjugate), solved(basic));
+    let middle = from.len() / 2;
+    let nominal = Deviation::new(&bound(basic, concave(basic))).expect("all bound");
+    let turn = -nominal.turn_to(from[middle].position, &near[middle]).expect("it comes there");
+    let share = |at: usize, count: usize| 2.0 * at as f64 / (count - 1) as f64 - 1.0;
+    let wished = |at: usize| {
+        let [v, u] = [share(at / counts[1], counts[0]), share(at % counts[1], counts[1])];
+        -0.05 * v * v - 0.025 * u * u
+    };
+    let known = from.iter().zip(&near).enumerate();
+    let known: Vec<(usize, (&SurfacePoint, &SurfacePoint))> =
+        known.filter(|(_, pair)| [pair.0, pair.1].iter().all(|of| of.outcome == Outcome::Solved)).collect();
+    let point = |&(at, (from, _)): &(usize, (&SurfacePoint, &SurfacePoint))| {
+        std::array::from_fn(|k| from.position[k] + wished(at) * from.normal[k])
+    };
+    let foot = |&(at, (_, near)): &(usize, (&SurfacePoint, &SurfacePoint))| NearFoot {
+        unknowns: near.unknowns.clone(),
+        distance: wished(at),
+    };
+    let surface = adjustable(basic, &OF_EASE_OFF);
+    let adjustment = SettingsAdjustment {
+        wanted: vec![WantedPoints {
+            surface: &surface,
+            points: known.iter().map(point).collect(),
+            near: known.iter().map(foot).collect(),
+        }],
+        kept: vec![],
+        settings: named(basic, &OF_EASE_OFF).iter().map(|of| unknown(of)).collect(),
+        turn: ScaledUnknown { start: turn, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
+        further: vec![],
+        shapes: None,
+        // weaker directions do next to nothing, and lead to where points have no foot
+        resolution: 3e-4,
+        uses_weak: false,
+    };
+    let found = adjustment.solve().expect("the points have feet");
+    assert!(known.len() > 1100 && found.fit.end == SearchEnd::Settled, "{} steps", found.fit.steps);
+    bencher.bench_local(|| black_box(&adjustment).solve().expect("the points have feet"));
 }
 
 /// The surface in nine open settings, as tapes.
