@@ -85,6 +85,23 @@ fn nothing_is_left_of_the_flank_of_a_helical_gear() {
     }
 }
 
+/// A picture of one pass speaks of no ridges, and of what is rounding no place is told.
+#[test]
+fn one_pass_is_shown_as_one() {
+    let out = folder("side_shown");
+    let spec = written(&out, "milled.chain", &gear(CYLINDER, STRIP));
+    let place = out.to_str().expect("a plain path");
+    let run = flank(&["plot", &spec, "--job", "milled", "--what", "milling", "--format", "svg", "--out", place]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let svg = std::fs::read_to_string(out.join("milled.milling.svg")).expect("a picture");
+    for words in ["what the pass leaves", "across the pass, where most is left"] {
+        assert!(svg.contains(&format!("aria-label=\"{words}\"")), "{words}");
+    }
+    assert!(!svg.contains("ridge"), "a pass alone leaves none");
+    let (_, told, _) = mill(&spec, &out, &[]);
+    assert!(told.contains("side leaves  at most 0.0000 um\n"), "{told}");
+}
+
 /// A program leaves what the pass and its blocks leave.
 #[test]
 fn programs_leave_what_was_planned() {

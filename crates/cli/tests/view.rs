@@ -362,6 +362,51 @@ fn a_pair_turns_in_the_browser() {
     drive(&file, json!({ "name": "apart", "motion": "turn", "refused": "do not reach each other" }));
 }
 
+/// The cutter of a milling goes where the program's table of cutter locations has it: as in `tests/page/milling.mjs`.
+#[test]
+fn a_cutter_moves_on_its_passes_in_the_browser() {
+    const MILLED: &str = "specs/bevel/milled_pinion.chain";
+    let folder = folder("view_milling_browser");
+    let (file, told) = page(MILLED, &folder);
+    assert!(told["bytes"].as_u64().expect("a size") < 3_000_000, "{told}");
+    let out = folder.to_str().expect("a plain path");
+    let run = flank(&["mill", MILLED, "finish", "--out", out]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = std::fs::read_to_string(folder.join("milled_pinion.finish.csv")).expect("cutter locations");
+    let rows: Vec<Vec<&str>> = table.lines().map(|row| row.split(',').collect()).collect();
+    let column = |name: &str| rows[0].iter().position(|title| *title == name).unwrap_or_else(|| panic!("{name}"));
+    let number = |row: &[&str], name: &str| row[column(name)].parse::<f64>().expect("a number");
+    let at: Vec<Value> = rows[1..]
+        .iter()
+        .map(|row| {
+            let of = |what: &str| ["x", "y", "z"].map(|axis| number(row, &format!("{what}_{axis}")));
+            json!({ "pass": number(row, "pass") as u32, "position": number(row, "position") as u32, "tip": of("tip"), "axis": of("axis") })
+        })
+        .collect();
+    let milling = &data(&file)["millings"][0];
+    assert_eq!(milling["counts"], json!([57, 43]));
+    // poses and values of some positions, as the table has them
+    let (poses, values) = (decoded(&milling["poses"]), decoded(&milling["values"]));
+    let [passes, positions] = [0, 1].map(|k| numbers(&milling["numbers"][k]));
+    assert_eq!([passes.len(), positions.len(), poses.len(), values.len()], [40, 40, 1600 * 6, 1600 * 7]);
+    assert_eq!([passes[0], passes[39], positions[0], positions[39]], [1.0, 57.0, 1.0, 43.0]);
+    let all = passes.iter().flat_map(|pass| positions.iter().map(move |position| [*pass, *position]));
+    for (k, [pass, position]) in all.enumerate() {
+        let row = &rows[((pass - 1.0) * 43.0 + position) as usize];
+        assert_eq!([number(row, "pass"), number(row, "position")], [pass, position]);
+        assert_eq!([poses[6 * k], poses[6 * k + 5]], [number(row, "tip_x"), number(row, "axis_z")]);
+        assert_eq!([values[7 * k], values[7 * k + 6]], [number(row, "profilewise"), number(row, "C_deg")]);
+    }
+    if !browser_is_there() {
+        return;
+    }
+    let expected = json!({
+        "at": at, "counts": [57, 43], "columns": ["profilewise", "lengthwise", "X", "A", "C"], "parameter": "m.radial_distance", "other": "other",
+    });
+    let arguments = [file.to_str().expect("a plain path"), out];
+    node("milling.mjs", &arguments, &expected).expect("node drives the browser");
+}
+
 /// Whether the tests can drive a browser; what they skip is told.
 fn browser_is_there() -> bool {
     let browser = std::env::var("CHROMIUM").unwrap_or("/usr/bin/chromium".to_string());

@@ -8,8 +8,9 @@ mod picture;
 mod report;
 
 pub use page::{
-    PageAxis, PageBody, PageContact, PageFace, PageFrame, PageJoint, PageMachine, PageMember, PageMotion, PageNumber,
-    PageParameter, PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm, write_page,
+    PageAxis, PageBody, PageColumn, PageContact, PageCut, PageFace, PageFrame, PageJoint, PageMachine, PageMember,
+    PageMilling, PageMotion, PageNumber, PageParameter, PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm,
+    write_page,
 };
 pub use picture::{
     ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, DrawnFrame, ErrorCurves, GearDrawing,

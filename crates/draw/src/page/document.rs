@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::body::{self, BodyOut};
 use super::contact::{self, ContactOut};
+use super::milling::{self, MillingOut};
 use super::scene::{PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Scene};
 use crate::base64::encoded;
 use crate::picture::{patch_colours, scale_colours, signed_colours};
@@ -36,6 +37,7 @@ pub(super) struct Document<'a> {
     lines: Vec<LineOut<'a>>,
     bodies: Vec<BodyOut<'a>>,
     contacts: Vec<ContactOut<'a>>,
+    millings: Vec<MillingOut<'a>>,
 }
 
 #[derive(Serialize)]
@@ -112,6 +114,7 @@ impl<'a> Document<'a> {
             lines: lines.iter().map(line).collect(),
             bodies: scene.bodies.iter().map(body::out).collect(),
             contacts: scene.contacts.iter().map(|contact| contact::out(contact, surfaces)).collect(),
+            millings: scene.millings.iter().map(milling::out).collect(),
         }
     }
 }

@@ -3,6 +3,7 @@
 mod body;
 mod contact;
 mod document;
+mod milling;
 mod scene;
 
 use std::io::Write;
@@ -14,6 +15,7 @@ use flank_export::text::escaped;
 
 pub use body::{PageBody, PageFace};
 pub use contact::{PageContact, PageMember, PageNumber, PageTouch};
+pub use milling::{PageColumn, PageCut, PageMilling};
 pub use scene::{
     PageAxis, PageFrame, PageJoint, PageMachine, PageMotion, PageParameter, PageSurface, PageTool, Revolution, Scene,
     ToolForm,
@@ -24,7 +26,7 @@ const STYLE: &str = include_str!("web/style.css");
 /// The parts of three.js that the page uses, with its licence; `library/build.mjs` makes it.
 const LIBRARY: &str = include_str!("library/three.min.js");
 /// The page's own modules, each after those that it imports.
-const MODULES: [&str; 16] = [
+const MODULES: [&str; 17] = [
     include_str!("web/numbers.js"),
     include_str!("web/settings.js"),
     include_str!("web/newton.js"),
@@ -38,6 +40,7 @@ const MODULES: [&str; 16] = [
     include_str!("web/flat.js"),
     include_str!("web/pair.js"),
     include_str!("web/body.js"),
+    include_str!("web/milling.js"),
     include_str!("web/hanging.js"),
     include_str!("web/controls.js"),
     include_str!("web/main.js"),

@@ -6,6 +6,7 @@ use flank_export::Unit;
 
 use super::body::PageBody;
 use super::contact::PageContact;
+use super::milling::PageMilling;
 
 /// Everything of a page that is not in its dataset.
 ///
@@ -29,6 +30,8 @@ pub struct Scene {
     pub bodies: Vec<PageBody>,
     /// Pairs of them that roll on each other.
     pub contacts: Vec<PageContact>,
+    /// Cutters on their passes.
+    pub millings: Vec<PageMilling>,
     /// JavaScript functions, each an `export function`.
     pub functions: String,
     /// Their names.

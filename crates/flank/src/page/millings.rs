@@ -1,6 +1,7 @@
-//! What millings leave, as colours of the flanks on a page.
+//! Millings on a page: what they leave as colours of the flanks, and the cutters on their passes.
 
 use flank_chain_dsl::Job;
+use flank_draw::PageMilling;
 use flank_export::{Field, Patch, Values};
 use rayon::prelude::*;
 
@@ -11,7 +12,7 @@ use crate::project::requests::JobSelection;
 use crate::project::session::Session;
 use crate::solve::solved::Solved;
 
-/// Adds what each milling leaves to the points of the surface that it mills; returns what cannot be milled.
+/// Adds what each milling leaves to the points of the surface that it mills; returns the cutters on their passes, and what cannot be milled.
 ///
 /// # Errors
 /// If a cutter is none, something that it keeps clear of is not sampled, or the work is cancelled.
@@ -20,13 +21,16 @@ pub(super) fn add_left(
     solved: &[Solved<'_, '_>],
     patches: &mut [Patch],
     (jobs, session): (&JobSelection, Session<'_>),
-) -> Result<Vec<NotDone>, Failure> {
-    let mut missing = Vec::new();
+) -> Result<(Vec<PageMilling>, Vec<NotDone>), Failure> {
+    let (mut pages, mut missing) = (Vec::new(), Vec::new());
     for milling in &job.millings {
         let name = &job.surfaces[milling.surface].name;
         let Some(at) = solved.iter().position(|solved| solved.surface.name == *name) else { continue };
-        let flank = match MilledFlank::planned(job, milling, (jobs, session))? {
-            Ok(flank) => flank,
+        let flank = match MilledFlank::on_page(job, milling, at, (jobs, session))? {
+            Ok((flank, page)) => {
+                pages.push(page);
+                flank
+            }
             Err(why) => {
                 missing.extend(why);
                 continue;
@@ -46,5 +50,5 @@ pub(super) fn add_left(
         });
         missing.extend(flank.not_done);
     }
-    Ok(missing)
+    Ok((pages, missing))
 }

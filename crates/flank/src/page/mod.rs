@@ -109,7 +109,8 @@ fn pages(
         contacts::add_gaps(&contacts, &solved, &mut dataset.patches);
         not_done.extend(contacts.iter().flat_map(contacts::Shown::refused));
         let of_mills = (selection, wanted.session);
-        not_done.extend(millings::add_left(job, &solved, &mut dataset.patches, of_mills)?);
+        let (millings, missing) = millings::add_left(job, &solved, &mut dataset.patches, of_mills)?;
+        not_done.extend(missing);
         let mut remarks = Vec::new();
         let written = if tally.solved == 0 {
             let message = format!("no page: job `{}` has no point to show", job.name);
@@ -118,6 +119,7 @@ fn pages(
         } else {
             let bodies = bodies::page_bodies(job, &solved, wanted.session)?;
             let (shown, scene, part) = prepared(&graph, job, (&solved, &contacts, bodies), &dataset);
+            let scene = Scene { millings, ..scene };
             remarks.extend(part.iter().map(|text| Remark::new(RemarkKind::ShownInPart, &job.name, text)));
             Some(put(&job.name, &origin, &shown, &scene)?)
         };
@@ -222,6 +224,7 @@ fn scene<'g>(
         surfaces,
         bodies: Vec::new(),
         contacts: contacts.iter().filter_map(|contact| contact.page(job, solved)).collect(),
+        millings: Vec::new(),
         definitions: parameters::definitions(job, &mut functions),
         notes: Vec::new(),
         functions: functions.text,

@@ -6,6 +6,7 @@ import { buildAbout, buildChoices, buildHeader, buildMotions, buildParameters, b
 import { eye, hangBlank, hangLines, hangTools, markLost, newMarker, triadSize } from "./hanging.js";
 import { Machine } from "./machine.js";
 import { WorkMesh } from "./meshes.js";
+import { Mill } from "./milling.js";
 import { withUnit } from "./numbers.js";
 import { element, pointRows, table } from "./panel.js";
 import { Pair } from "./pair.js";
@@ -65,6 +66,21 @@ class Page {
         return shown === undefined ? null : new Pair(this, shown);
     }
 
+    showMilling(number) {
+        this.milling = number;
+        this.mill?.object?.removeFromParent();
+        this.mill = this.millOn(this.number);
+        this.mill.hang();
+    }
+
+    /** The milling of a surface on a machine: the one that was chosen last, or the first. */
+    millOn(number) {
+        const isOn = ({ surface }) => this.visible.includes(this.meshes[surface]) && (this.pair || this.surfaces[surface].data.machine === number);
+        const on = this.data.millings.flatMap((milling, k) => (isOn(milling) ? [k] : []));
+        const shown = on.includes(this.milling) ? this.milling : on[0];
+        return shown === undefined ? null : new Mill(this, shown);
+    }
+
     /** What a surface hangs on. */
     groupOf(surface) {
         return this.pair ? this.pair.groupOf(surface) : this.stage.frames[surface.data.frame_index];
@@ -89,6 +105,9 @@ class Page {
         this.pair?.hang();
         this.motions.forEach((value, k) => this.motionSliders[k].set(value));
         for (const mesh of this.visible) this.groupOf(mesh.surface).add(mesh.object);
+        this.mill = this.millOn(number);
+        byId("milling").hidden = !this.mill;
+        this.mill?.hang();
         hangTools(this);
         hangBlank(this);
         hangBodies(this);
@@ -220,6 +239,7 @@ class Page {
         markLost(this);
         this.update();
         if (this.selected) this.select(this.selected.mesh, this.selected.point);
+        this.mill?.update();
         tellState(this);
     }
 

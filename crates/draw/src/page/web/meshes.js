@@ -124,7 +124,7 @@ export function indices(rows, columns, isThere) {
     return corners;
 }
 
-function meshOf(positions, rows, columns, material) {
+export function meshOf(positions, rows, columns, material) {
     const isThere = (point) => Number.isFinite(positions[3 * point]);
     const triangles = indices(rows, columns, isThere);
     const geometry = new THREE.BufferGeometry();

@@ -1,9 +1,11 @@
 //! A flank as a milling leaves it, for whoever rolls on it.
 
 use flank_chain_dsl::{Job, Milling};
+use flank_draw::PageMilling;
 use flank_solver::{PoseSeries, SweptCutter, cusp};
 
 use super::cutter::MillingCutter;
+use super::on_page::on_page;
 use super::target::Fields;
 use super::{Found, Worked, worked};
 use crate::project::failure::Failure;
@@ -50,12 +52,32 @@ impl MilledFlank {
         milling: &Milling<'_>,
         (jobs, session): (&JobSelection, Session<'_>),
     ) -> Result<Result<MilledFlank, Vec<NotDone>>, Failure> {
-        let Worked { target, result, found } = worked(job, milling, &MillRequest::new(jobs.clone()), session)?;
-        let Some(Found { cutter, fields, milled, swept, map }) = found else { return Ok(Err(result.not_done)) };
+        let worked = worked(job, milling, &MillRequest::new(jobs.clone()), session)?;
+        Ok(MilledFlank::of_worked(worked))
+    }
+
+    /// The same with the cutter on its passes for a page that has the surface in a place.
+    ///
+    /// # Errors
+    /// See [`worked`].
+    pub(crate) fn on_page(
+        job: &Job<'_>,
+        milling: &Milling<'_>,
+        surface: usize,
+        (jobs, session): (&JobSelection, Session<'_>),
+    ) -> Result<Result<(MilledFlank, PageMilling), Vec<NotDone>>, Failure> {
+        let worked = worked(job, milling, &MillRequest::new(jobs.clone()), session)?;
+        let page = worked.found.as_ref().map(|found| on_page(job, &worked.target, found, surface)).transpose()?;
+        Ok(MilledFlank::of_worked(worked).map(|flank| (flank, page.unwrap_or_default())))
+    }
+
+    fn of_worked(worked: Worked<'_, '_>) -> Result<MilledFlank, Vec<NotDone>> {
+        let Worked { target, result, found } = worked;
+        let Some(Found { cutter, fields, milled, swept, map }) = found else { return Err(result.not_done) };
         let most = milled.plan.cusp.or_else(|| map.highest());
         let (shares, passes, highest) = (milled.plan.shares[0].clone(), milled.ways, most.map_or(0.0, |at| at.height));
-        let (labels, stock, not_done) = (target.labels(), milling.stock, result.not_done);
-        Ok(Ok(MilledFlank { cutter, fields, swept, shares, passes, highest, stock, labels, not_done }))
+        let (labels, stock, not_done) = (target.labels(), target.milling.stock, result.not_done);
+        Ok(MilledFlank { cutter, fields, swept, shares, passes, highest, stock, labels, not_done })
     }
 
     pub(crate) fn passes(&self) -> usize {

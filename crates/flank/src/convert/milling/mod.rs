@@ -9,6 +9,7 @@ mod klartext;
 mod left;
 mod machine;
 mod obstacles;
+mod on_page;
 mod patch;
 mod plan;
 mod program;
