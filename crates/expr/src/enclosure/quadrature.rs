@@ -1,5 +1,8 @@
 //! Integrals by Gauss–Legendre quadrature, written out, with a proven bound on what it leaves.
 
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
 use super::interval::{Interval, IntervalEvaluator};
 use super::taylor::TaylorEvaluator;
 use crate::symbolic::graph::Expr;
@@ -106,6 +109,33 @@ fn is_point(range: Interval) -> bool {
     range.width() <= 64.0 * f64::EPSILON * range.magnitude()
 }
 
+/// Rules that were found lately. Texts are compiled again and again, with each keystroke of an editor, say, and most of what an integral takes
+/// is its bound.
+static KNOWN: Mutex<VecDeque<Known>> = Mutex::new(VecDeque::new());
+/// So many of them.
+const MOST_KNOWN: usize = 64;
+
+/// A rule, and all that it follows from.
+struct Known {
+    tapes: [Tape; 2],
+    ranges: Vec<Interval>,
+    /// The ends of the range, and its length.
+    place: [f64; 3],
+    found: Result<Rule, Unproven>,
+}
+
+impl Known {
+    fn is_of(&self, integrand: &Integrand<'_>, place: [f64; 3]) -> bool {
+        let bits = |of: [f64; 3]| of.map(f64::to_bits);
+        let ends = |range: &Interval| (range.lo.to_bits(), range.hi.to_bits(), range.continuous);
+        let are_ranges = self.ranges.iter().map(ends).eq(integrand.ranges.iter().map(ends));
+        bits(self.place) == bits(place)
+            && are_ranges
+            && self.tapes[0].is_same(&integrand.tape)
+            && self.tapes[1].is_same(&integrand.slopes)
+    }
+}
+
 struct Integrand<'g> {
     expr: Expr<'g>,
     variable: Expr<'g>,
@@ -123,15 +153,32 @@ impl<'g> Integrand<'g> {
         if low == high || from.expr == to.expr {
             return Ok((self.variable.graph().constant(0.0), 0.0));
         }
+        let Rule { nodes, pieces, left } = self.known_rule([low, high, length])?;
+        Ok((self.written_out(from.expr, to.expr, nodes, pieces), length * left))
+    }
+
+    /// The rule for a range between two ends, of a length.
+    fn known_rule(&self, place: [f64; 3]) -> Result<Rule, Unproven> {
+        // whoever panics while others wait has changed nothing by halves
+        let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(known) = known().iter().find(|known| known.is_of(self, place)) {
+            return known.found;
+        }
+        let found = self.rule(place);
+        let (tapes, ranges) = ([self.tape.clone(), self.slopes.clone()], self.ranges.clone());
+        let mut known = known();
+        known.push_front(Known { tapes, ranges, place, found });
+        known.truncate(MOST_KNOWN);
+        found
+    }
+
+    fn rule(&self, [low, high, length]: [f64; 3]) -> Result<Rule, Unproven> {
         let mut parts = FEWEST_PARTS;
         loop {
             let found = self.bounds(low, high, parts).and_then(|bounds| bounds.fewest(length).ok_or(Unproven::TooLong));
             match found {
-                Ok(Rule { nodes, pieces, left }) => {
-                    return Ok((self.written_out(from.expr, to.expr, nodes, pieces), length * left));
-                }
-                Err(reason) if parts >= reason.most_parts() => return Err(reason),
-                Err(_) => parts *= 4,
+                Err(reason) if parts < reason.most_parts() => parts *= 4,
+                found => return found,
             }
         }
     }
@@ -209,7 +256,7 @@ fn over_part(order: usize, at_middle: &[Interval], reach: f64, last: Interval) -
 }
 
 /// How an integral is written out.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Rule {
     /// Of each piece.
     nodes: usize,

@@ -75,6 +75,17 @@ pub enum TapeError {
 }
 
 impl Tape {
+    /// Whether another one computes the same, bit by bit, in the same order.
+    pub(crate) fn is_same(&self, other: &Tape) -> bool {
+        let shape = |of: &Tape| [of.input_count, of.setting_count, of.register_count, of.constants.len()];
+        let bits = |of: &Tape| of.constants.iter().map(|constant| constant.to_bits()).collect::<Vec<u64>>();
+        shape(self) == shape(other)
+            && self.instructions == other.instructions
+            && self.outputs == other.outputs
+            && bits(self) == bits(other)
+            && self.curves == other.curves
+    }
+
     /// Lays out `outputs` as functions of the variables `inputs`. Of a variable given twice the last entry counts.
     ///
     /// # Errors

@@ -1,11 +1,13 @@
 //! A surface of a tooth space, and the lines on which it ends.
 
 use std::borrow::Cow;
+use std::cell::RefCell;
+use std::rc::Rc;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
-use flank_expr::Expr;
 use flank_expr::geometry::{Axis, Chain, Step, Vector3};
-use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, Range, SurfacePoint, SurfacePoints};
+use flank_expr::{Expr, InstructionSet};
+use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, Range, SurfacePoint, SurfacePoints, SurfaceProblem};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
@@ -16,6 +18,8 @@ use crate::solve::surface::{bound, problem};
 const MOST_LINES: usize = 9;
 /// Boxes that a search for a point of a line looks at: where Newton's method does not reach it there is mostly none.
 const BOXES: u64 = 200;
+/// Points of so many machine code pays for.
+const MANY: usize = 64;
 /// An unknown whose known values lie this near to a function of the way along, as a share of their variance, tells rows of a space apart
 /// badly.
 const SCATTER: f64 = 1e-3;
@@ -30,6 +34,8 @@ pub(crate) struct Piece<'j, 'g> {
     pub(crate) arrangement: Arrangement,
     session: Session<'j>,
     pub(crate) known: Vec<SurfacePoint>,
+    /// The problems of coordinates that were asked for.
+    problems: RefCell<Vec<([Expr<'g>; 2], Rc<SurfaceProblem>)>>,
 }
 
 /// A line of a surface on which one of its unknowns is at an end of its range.
@@ -70,7 +76,8 @@ impl<'j, 'g> Piece<'j, 'g> {
         if known.is_empty() {
             return Err(format!("`{name}` bounds the spaces of a solid, and no point of its sample is solved").into());
         }
-        Ok(Piece { job, surface: Cow::Borrowed(surface), arrangement, session, known })
+        let surface = Cow::Borrowed(surface);
+        Ok(Piece { job, surface, arrangement, session, known, problems: RefCell::default() })
     }
 
     /// The same surface in another space: farther on about the work's axis, or along its line.
@@ -93,6 +100,7 @@ impl<'j, 'g> Piece<'j, 'g> {
         Piece {
             known: known.collect(),
             surface: Cow::Owned(GeneratedSurface { surface: moved, ..self.surface.clone().into_owned() }),
+            problems: RefCell::default(),
             ..*self
         }
     }
@@ -169,8 +177,22 @@ impl<'j, 'g> Piece<'j, 'g> {
         far: impl Fn(&SurfacePoint) -> f64,
     ) -> SurfacePoints {
         let near = self.known.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-        let problem = problem(self.job, &self.surface, coordinates, self.session).boxes(BOXES);
-        problem.solve_points(targets, counts, near.map(|point| &point.unknowns[..]), None).0
+        let (problem, start) = (self.problem(coordinates), near.map(|point| &point.unknowns[..]));
+        if targets.len() >= MANY {
+            return problem.solve_points(targets, counts, start, None).0;
+        }
+        let problem = SurfaceProblem::clone(&problem).with_instruction_set(InstructionSet::widest());
+        problem.solve_points(targets, counts, start, None).0
+    }
+
+    fn problem(&self, coordinates: [Expr<'g>; 2]) -> Rc<SurfaceProblem> {
+        let mut problems = self.problems.borrow_mut();
+        if let Some((_, known)) = problems.iter().find(|(known, _)| *known == coordinates) {
+            return Rc::clone(known);
+        }
+        let made = Rc::new(problem(self.job, &self.surface, coordinates, self.session).boxes(BOXES));
+        problems.push((coordinates, Rc::clone(&made)));
+        made
     }
 
     /// Points of a line on which an unknown has a value.
