@@ -210,6 +210,8 @@ impl LeastSquares {
         let mut state = self.state(start, &mut linearized)?;
         let (mut rank, mut steps, mut tried) = (0, 0, 0);
         let (mut damping, mut growth) = (0.0, GROWTH);
+        // whether the whole step from here, along so many directions, was tried and did not do
+        let mut failed = None;
         let end = loop {
             if tried == MOST_STEPS {
                 break SearchEnd::Unfinished;
@@ -232,6 +234,7 @@ impl LeastSquares {
                     is_slow = trial.cost(step.weight) > SLOW * cost;
                     let is_hopeless = self.given_up.is_some_and(|share| trial.cost(step.weight) > share * cost);
                     state = trial;
+                    failed = None;
                     if is_hopeless {
                         break SearchEnd::Unfinished;
                     }
@@ -239,6 +242,9 @@ impl LeastSquares {
                 None if is_small => {}
                 None if damping >= LARGEST_DAMPING * step.squares[1] => break SearchEnd::Stuck,
                 None => {
+                    if damping == 0.0 {
+                        failed = Some(rank);
+                    }
                     (damping, growth) = (step.raised(damping, growth), growth * GROWTH);
                     continue;
                 }
@@ -247,6 +253,10 @@ impl LeastSquares {
             let shown = if is_small || is_slow { self.shown(&mut state) } else { rank };
             if is_small && damping == 0.0 && shown <= rank {
                 break SearchEnd::Settled;
+            }
+            // neither the whole step nor the shortest one
+            if is_small && failed == Some(rank.max(shown)) {
+                break SearchEnd::Stuck;
             }
             rank = rank.max(shown);
             damping = if is_small { 0.0 } else { damping };
@@ -264,9 +274,10 @@ impl LeastSquares {
             && jacobian.col_iter().all(|of| of.iter().all(|slope| slope.is_finite()));
         let count = residuals.len() - self.exact;
         let column = |from: usize, count: usize| Mat::from_fn(count, 1, |row, _| residuals[from + row]);
-        let rows = |from: usize, count: usize| Mat::from_fn(count, values.len(), |row, k| jacobian[(from + row, k)]);
-        let kept = Kept { residuals: column(count, self.exact), jacobian: rows(count, self.exact) };
-        let (residuals, jacobian) = (column(0, count), rows(0, count));
+        let kept =
+            Kept { residuals: column(count, self.exact), jacobian: jacobian.subrows(count, self.exact).to_owned() };
+        let residuals = column(0, count);
+        let jacobian = if self.exact == 0 { jacobian } else { jacobian.subrows(0, count).to_owned() };
         let squares = residuals.squared_norm_l2();
         is_finite.then_some(State { values, residuals, jacobian, kept, squares, decomposed: None })
     }
