@@ -475,6 +475,36 @@ fn a_wanted_ease_off_is_reached_where_settings_make_it() {
     assert!((number(&reached["slopes_um"][0]) - 20.0).abs() < 2.0, "{reached}");
 }
 
+/// The inside blades do not touch this flank: nothing is changed for a wish, and why is said.
+#[test]
+fn a_wish_that_no_setting_moves_is_told() {
+    let wish = ["--ease-off", "bias: 20", "--from", "conjugate.concave", "--vary", "c.inside_point_radius"];
+    let (told, stderr) = fit(3, &[&[EASE_OFF, "basic.concave"][..], &wish].concat());
+    assert!(names(&told["correction"]["settings"]).is_empty(), "{told}");
+    assert!(stderr.contains("`c.inside_point_radius` does not move concave"), "{stderr}");
+    assert!(stderr.contains("none is changed") && stderr.contains("not met"), "{stderr}");
+}
+
+/// Where two settings do the same but for next to nothing, the search for both may come to no end: then no uncertainty is claimed, and it is said.
+#[test]
+fn a_search_without_an_end_is_told() {
+    let spec = "specs/bevel/conjugate_pinion_19x62.chain";
+    let out = folder("fit_no_end");
+    let set = ["m.radial_distance=97.87579403144188 mm", "m.machine_root_angle=1.3196246722237475 rad"];
+    let more = ["m.shaft_angle=1.65743132328724 rad", "c.blade_angle=0.3479835252496473 rad"];
+    let mut arguments = vec!["measure", spec, "--surface", "concave", "--out", path(&out)];
+    set.iter().chain(&more).for_each(|value| arguments.extend(["--set", value]));
+    assert_eq!(flank(&arguments).status.code(), Some(0));
+    let file = out.join("conjugate_pinion_19x62.grid.csv");
+    let varied = "m.radial_distance,m.machine_root_angle,m.shaft_angle,c.blade_angle";
+    let (told, stderr) = fit(0, &[spec, "concave", "--measured", path(&file), "--vary", varied]);
+    let found = &told["identification"];
+    assert!(number(&found["left_um"]) < 1e-4, "{found}");
+    let off = (number(&found["settings"][1]["new"]) - 1.3196246722237475f64.to_degrees()).abs();
+    let is_said = stderr.contains("the search came to no end") && found["settings"][1]["uncertain_by"].is_null();
+    assert!(off < 1e-7 || is_said, "{found} {stderr}");
+}
+
 /// The published settings lie 5 um off the parabola that they were after; these settings come nearer, none on it.
 #[test]
 fn the_published_ease_off_is_no_parabola() {
@@ -561,7 +591,8 @@ fn what_is_kept_stays_where_the_thickness_is_free() {
         let (sine, cosine) = f64::sin_cos(FURTHER);
         plain(place, [x * cosine - y * sine, x * sine + y * cosine, z])
     });
-    let varied = "radial_distance,machine_root_angle,work_offset,sliding_base,machine_center_to_crossing_point,ratio_of_roll";
+    let varied =
+        "radial_distance,machine_root_angle,work_offset,sliding_base,machine_center_to_crossing_point,ratio_of_roll";
     let and = format!("convex={}", path(&file));
     let corrected = |measured: &str, more: &[&str]| {
         let asked = [PINION, "concave", "--measured", measured, "--and", &and, "--vary", varied, "--within", "20um"];
@@ -646,7 +677,12 @@ fn the_published_ease_off_is_met_from_the_basic_settings() {
             }
         }
         job plain = curved()
-        job published = pinion()\n",
+        job published extends pinion {
+            sample concave {
+                toe_root: toe_root_1(), heel_root: heel_root_1(), toe_tip: toe_tip_1(), heel_tip: heel_tip_1()
+                profilewise: 0.3 .. 1 by 11, lengthwise: 0 .. 1 by 15
+            }
+        }\n",
     );
     let varied = "radial_distance,cradle_angle,work_offset,machine_center_to_crossing_point,ratio_of_roll,modified_roll_2c,modified_roll_6d,\
                   outside_point_radius,blade_angle,blade_curvature";
@@ -663,4 +699,9 @@ fn the_published_ease_off_is_met_from_the_basic_settings() {
     // neither lies on the parabola
     let left = number(&told["predicted_um"]);
     assert!(left > 3.0 && left < 6.0, "{left}");
+    // the published flank itself, from the basic settings: with all directions that show they make it
+    let all = format!("{varied},sliding_base");
+    let asked = [&spec, "curved.concave", "--from", "published.concave", "--ease-off", "bias: 0", "--vary", &all];
+    let (told, _) = fit(0, &[&asked[..], &["--resolution", "0.001um"]].concat());
+    assert!(number(&told["before_um"]) > 10.0 && number(&told["predicted_um"]) < 1e-3, "{}", told["predicted_um"]);
 }
