@@ -485,6 +485,26 @@ fn a_wish_that_no_setting_moves_is_told() {
     assert!(stderr.contains("none is changed") && stderr.contains("not met"), "{stderr}");
 }
 
+/// Where two settings do the same but for next to nothing, the search for both may come to no end: then no uncertainty is claimed, and it is said.
+#[test]
+fn a_search_without_an_end_is_told() {
+    let spec = "specs/bevel/conjugate_pinion_19x62.chain";
+    let out = folder("fit_no_end");
+    let set = ["m.radial_distance=97.87579403144188 mm", "m.machine_root_angle=1.3196246722237475 rad"];
+    let more = ["m.shaft_angle=1.65743132328724 rad", "c.blade_angle=0.3479835252496473 rad"];
+    let mut arguments = vec!["measure", spec, "--surface", "concave", "--out", path(&out)];
+    set.iter().chain(&more).for_each(|value| arguments.extend(["--set", value]));
+    assert_eq!(flank(&arguments).status.code(), Some(0));
+    let file = out.join("conjugate_pinion_19x62.grid.csv");
+    let varied = "m.radial_distance,m.machine_root_angle,m.shaft_angle,c.blade_angle";
+    let (told, stderr) = fit(0, &[spec, "concave", "--measured", path(&file), "--vary", varied]);
+    let found = &told["identification"];
+    assert!(number(&found["left_um"]) < 1e-4, "{found}");
+    let off = (number(&found["settings"][1]["new"]) - 1.3196246722237475f64.to_degrees()).abs();
+    let is_said = stderr.contains("the search came to no end") && found["settings"][1]["uncertain_by"].is_null();
+    assert!(off < 1e-7 || is_said, "{found} {stderr}");
+}
+
 /// The published settings lie 5 um off the parabola that they were after; these settings come nearer, none on it.
 #[test]
 fn the_published_ease_off_is_no_parabola() {

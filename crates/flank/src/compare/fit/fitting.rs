@@ -208,7 +208,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
     }
 
     fn adjusted(&self, of: &AdjustedSurfaces, free: &[usize]) -> AdjustedSettings {
-        let variance = variance(of);
+        let (variance, is_settled) = (variance(of), of.fit.end == SearchEnd::Settled);
         let setting = |&k: &usize| {
             let setting = self.problem.settings[k];
             let shown = |value: f64| units::shown(setting.dimension, value);
@@ -231,7 +231,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
                     RangeEnd::High => RangeBound::High,
                 }),
                 moves_um: 1e3 * change.abs() * rms(&of.effect(k)),
-                uncertain_by: uncertain.filter(|_| held.is_none() && is_told).map(shown),
+                uncertain_by: uncertain.filter(|_| held.is_none() && is_told && is_settled).map(shown),
             }
         };
         let scale = |k: usize| units::shown(self.problem.settings[k].dimension, 1.0);
@@ -244,7 +244,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             settings: free.iter().map(setting).collect(),
             left_um: 1e3 * rms(&of.fit.residuals),
             steps: of.fit.steps,
-            is_settled: of.fit.end == SearchEnd::Settled,
+            is_settled,
             covariance: variance.map_or(Vec::new(), covariance),
         }
     }

@@ -144,7 +144,8 @@ pub struct AdjustedSetting {
     pub at_bound: Option<RangeBound>,
     /// What the change moves the flank by, root of the mean square.
     pub moves_um: f64,
-    /// One standard deviation, from what is left; null where the points do not determine the setting, or an end of its range holds it.
+    /// One standard deviation, from what is left; null where the points do not determine the setting, an end of its range holds it, or the
+    /// search came to no end.
     pub uncertain_by: Option<f64>,
 }
 

@@ -30,6 +30,10 @@ pub(super) fn judged(
         let reasons = reasons(&result, fitting, (request, main));
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, surface, message).with(reasons));
     }
+    if left <= result.within_um && !is_settled(&result) {
+        let message = format!("the search came to no end: other settings may make {surface} as well");
+        result.remarks.push(Remark::new(RemarkKind::NotShown, surface, message));
+    }
     let unmet: usize =
         fitting.aims.iter().zip(&result.flanks).map(|(aim, of)| aim.points.iter().flatten().count() - of.known).sum();
     if unmet > 0 {
@@ -66,6 +70,11 @@ pub(super) fn judged(
         result.remarks.push(remark);
     }
     result
+}
+
+/// Whether no further step would leave less.
+fn is_settled(result: &FitResult) -> bool {
+    result.identification.iter().chain([&result.correction]).all(|of| of.is_settled)
 }
 
 /// Settings that take no more away than chance would.
@@ -115,8 +124,7 @@ fn reasons(
     if !bound.is_empty() {
         reasons.push(format!("bounds: {} stands at the end of its range", bound.join(", ")));
     }
-    let of_all = result.identification.iter().chain([&result.correction]);
-    if of_all.clone().any(|of| !of.is_settled) {
+    if !is_settled(result) {
         reasons.push("the search came to no end: the points may lie too far off to be reached".to_string());
     }
     let unused = main.fit.directions.iter().filter(|of| !of.is_used).count();
