@@ -1,11 +1,13 @@
-//! Milling a flank of the published pinion: poses with curvatures and axes, and distances to the opposite flank, at 100 × 200 positions.
+//! Milling a flank of the published pinion: poses with curvatures and axes, distances to the opposite flank, a program, and what its blocks leave, at
+//! 100 × 200 positions.
 
 use divan::{Bencher, black_box};
 use flank_chain_dsl::{GeneratedSurface, Job, SampleGrid};
+use flank_export::{Dialect, Header, MachineAxis, PassProgram, ProgramPass, WordsOf, write_passes};
 use flank_expr::Graph;
 use flank_solver::{
-    BoundSurface, Chart, Cutter, CutterPose, Lean, MillAxes, Obstacle, OutlinePiece, PoseField, Range, SurfaceFrame,
-    SurfaceFrames, SurfaceProblem, ToolBody,
+    BoundSurface, Chart, Cutter, CutterPose, Lean, MillAxes, Obstacle, OutlinePiece, PoseField, PoseSeries, Range,
+    SurfaceFrame, SurfaceFrames, SurfaceProblem, SweptCutter, ToolBody,
 };
 use flank_tests::job;
 
@@ -72,16 +74,29 @@ fn poses(frames: &[SurfaceFrame], cutter: &Cutter) -> Vec<CutterPose> {
     frames.iter().map(|frame| CutterPose::touching(frame, cutter, LEAN, 1.0).expect("it touches")).collect()
 }
 
+/// The axes of the job's machine.
+fn axes<'g>(graph: &'g Graph, job: &Job<'g>) -> MillAxes {
+    let milling = &job.millings[0];
+    let variables: Vec<_> = job.machines[milling.machine].axes.iter().map(|axis| axis.variable).collect();
+    MillAxes::new(graph, &milling.t_work_tool.substituted(&job.bindings()), &variables).expect("five axes")
+}
+
+/// Points with their frames alone, a part of the next.
+#[divan::bench]
+fn points_20000(bencher: Bencher) {
+    let graph = Graph::new();
+    let job = job(&graph, MILLED, &[]);
+    let flank = Flank::new(&job, "concave");
+    bencher.bench_local(|| black_box(flank.passes()));
+}
+
 /// Points, poses, curvatures of the gap, axes. The goal is 30 ms.
 #[divan::bench]
 fn poses_20000(bencher: Bencher) {
     let graph = Graph::new();
     let job = job(&graph, MILLED, &[]);
     let (flank, cutter) = (Flank::new(&job, "concave"), ball());
-    let milling = &job.millings[0];
-    let variables: Vec<_> = job.machines[milling.machine].axes.iter().map(|axis| axis.variable).collect();
-    let chain = milling.t_work_tool.substituted(&job.bindings());
-    let axes = MillAxes::new(&graph, &chain, &variables).expect("five axes");
+    let axes = axes(&graph, &job);
     bencher.bench_local(|| {
         let frames = flank.passes();
         let poses = poses(&frames, &cutter);
@@ -122,5 +137,77 @@ fn clearance_20000(bencher: Bencher) {
             least = found.map_or(least, |found| found.distance.min(least));
         }
         least
+    });
+}
+
+/// A program of all positions, without its file. The goal is 20 ms.
+#[divan::bench]
+fn program_20000(bencher: Bencher) {
+    let graph = Graph::new();
+    let job = job(&graph, MILLED, &[]);
+    let rows: Vec<[f64; 6]> =
+        poses(&Flank::new(&job, "concave").passes(), &ball()).iter().map(CutterPose::row).collect();
+    let along = axes(&graph, &job).at_each(&rows, 0);
+    let axis = |(k, address): (usize, &str)| MachineAxis {
+        name: address.to_string(),
+        address: address.to_string(),
+        reversed: k == 4,
+        offset: 0.0,
+        is_rotary: k > 2,
+        decimals: if k > 2 { 5 } else { 4 },
+        travel: None,
+    };
+    let pass = |(number, (rows, tips)): (usize, (&[Vec<f64>], &[[f64; 6]]))| ProgramPass {
+        name: format!("pass {}", number + 1),
+        rows: rows.to_vec(),
+        tips: tips.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
+        ways: vec![0.25; rows.len() - 1],
+    };
+    let program = PassProgram {
+        header: Header {
+            program: String::new(),
+            spec: String::new(),
+            spec_hash: String::new(),
+            job: String::new(),
+            conventions: Vec::new(),
+        },
+        title: String::new(),
+        axes: ["X", "Y", "Z", "A", "C"].into_iter().enumerate().map(axis).collect(),
+        retract: (2, 200.0),
+        passes: along.chunks(POSITIONS[1]).zip(rows.chunks(POSITIONS[1])).enumerate().map(pass).collect(),
+        feed: 600.0,
+        spindle: None,
+        words: WordsOf::Axes,
+    };
+    bencher.bench_local(|| {
+        let mut text = Vec::new();
+        write_passes(black_box(&program), Dialect::LinuxCnc, &mut text).expect("it is written");
+        text
+    });
+}
+
+/// What the blocks between all positions leave at the 15 × 31 points of a map: most of a program's verification. The goal is 1 s.
+#[divan::bench]
+fn left_by_20000_blocks(bencher: Bencher) {
+    let graph = Graph::new();
+    let job = job(&graph, MILLED, &[]);
+    let flank = Flank::new(&job, "concave");
+    let rows: Vec<[f64; 6]> = poses(&flank.passes(), &ball()).iter().map(CutterPose::row).collect();
+    let block = |pair: &[[f64; 6]]| {
+        let (from, to) = (pair[0], pair[1]);
+        PoseSeries::sampled(9, |share| [0, 1, 2, 3, 4, 5].map(|k| from[k] + share * (to[k] - from[k])))
+    };
+    let middles = |count: usize, [low, high]: [f64; 2]| -> Vec<f64> {
+        (0..count).map(|k| low + (high - low) * (k as f64 + 0.5) / count as f64).collect()
+    };
+    let points = flank.at([&middles(15, [0.2, 0.97]), &middles(31, [0.0, 1.0])]);
+    bencher.bench_local(|| {
+        let blocks = rows.chunks(POSITIONS[1]).flat_map(|pass| pass.windows(2).map(block)).collect();
+        let swept = SweptCutter::of_blocks(blocks, &ball());
+        let left = |frame: &SurfaceFrame| {
+            let ([x, y, z], [nx, ny, nz]) = (frame.position, frame.normal);
+            swept.left(&[x, y, z, nx, ny, nz]).expect("a pass goes over it").height
+        };
+        points.iter().map(left).fold(0.0, f64::max)
     });
 }

@@ -149,12 +149,27 @@ impl Dialect {
 
     /// An axis word.
     pub(super) fn word(self, address: &str, position: &str) -> String {
-        if self == Dialect::Heidenhain {
-            let sign = if position.starts_with('-') { "" } else { "+" };
-            return format!("{address}{sign}{position}");
+        let mut text = String::new();
+        self.address(address, &mut text);
+        let from = text.len();
+        text.push_str(position);
+        self.sign(from, &mut text);
+        text
+    }
+
+    /// Puts an address behind a text.
+    pub(super) fn address(self, address: &str, text: &mut String) {
+        text.push_str(address);
+        if self != Dialect::Heidenhain && address.len() > 1 {
+            text.push('=');
         }
-        let is_extended = address.len() > 1;
-        if is_extended { format!("{address}={position}") } else { format!("{address}{position}") }
+    }
+
+    /// Gives the number that stands behind a place of a text its sign, where the control wants one of those above zero, too.
+    pub(super) fn sign(self, from: usize, text: &mut String) {
+        if self == Dialect::Heidenhain && !text[from..].starts_with('-') {
+            text.insert(from, '+');
+        }
     }
 
     /// Whether it has axes of this address.

@@ -266,28 +266,42 @@ fn positions(table: &MotionTable, dialect: Dialect, row: usize) -> Result<Vec<St
     table.axes.iter().zip(&row.axes).map(word).collect()
 }
 
-/// The word of an axis within its travel; `place` says where it would not be.
+/// Puts the word of an axis behind a text, if it is within the travel, as programs count it; `place` says where it would not be.
+pub(super) fn push_axis_word(
+    (axis, [low, high]): (&MachineAxis, [f64; 2]),
+    position: f64,
+    dialect: Dialect,
+    place: &dyn Fn() -> String,
+    text: &mut String,
+) -> Result<(), NcError> {
+    /// What conversion to degrees may add to an end of the travel.
+    const ROUNDING: f64 = 1e-9;
+    dialect.address(&axis.address, text);
+    let from = text.len();
+    let printed = axis.print(position, text);
+    if !(printed >= low - ROUNDING && printed <= high + ROUNDING) {
+        let unit = axis.unit().symbol();
+        return Err(NcError::BeyondTravel {
+            axis: axis.name.clone(),
+            position: format!("{} {unit}", &text[from..]),
+            motion: place(),
+            travel: format!("{} .. {} {unit}", shortest(low), shortest(high)),
+        });
+    }
+    dialect.sign(from, text);
+    Ok(())
+}
+
+/// The same alone.
 pub(super) fn axis_word(
     axis: &MachineAxis,
     position: f64,
     dialect: Dialect,
     place: &dyn Fn() -> String,
 ) -> Result<String, NcError> {
-    /// What conversion to degrees may add to an end of the travel.
-    const ROUNDING: f64 = 1e-9;
-    let (printed, unit) = (axis.printed(position), axis.unit().symbol());
-    let travel = axis.travel.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
-    let [low, high] = axis.written(axis.programmed_ends(travel));
-    let is_within = |value: f64| value >= low - ROUNDING && value <= high + ROUNDING;
-    if !printed.parse().is_ok_and(is_within) {
-        return Err(NcError::BeyondTravel {
-            axis: axis.name.clone(),
-            position: format!("{printed} {unit}"),
-            motion: place(),
-            travel: format!("{} .. {} {unit}", shortest(low), shortest(high)),
-        });
-    }
-    Ok(dialect.word(&axis.address, &printed))
+    let mut text = String::new();
+    push_axis_word((axis, axis.printed_travel()), position, dialect, place, &mut text)?;
+    Ok(text)
 }
 
 /// The length of a block over mm and degrees alike.

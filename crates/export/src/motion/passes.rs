@@ -3,15 +3,17 @@
 use std::io::Write;
 
 use super::dialect::Dialect;
-use super::nc::{NcError, axis_word, block_length, check_axes, extent_line};
+use super::nc::{NcError, axis_word, block_length, check_axes, extent_line, push_axis_word};
 use super::table::MachineAxis;
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;
-use crate::text::number::{fixed, shortest};
+use crate::text::number::{fixed, push_fixed, shortest};
 use crate::text::one_line;
 
 /// Decimals of tips in the work, mm.
 const DECIMALS_OF_TIPS: usize = 4;
+/// Letters of a block, about.
+const BLOCK: usize = 80;
 
 /// A program that mills along passes.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,7 +68,8 @@ pub struct ProgramPass {
 /// When a position is beyond the travel of its axis, the control lacks an axis or takes no such feed, or the stream refuses.
 pub fn write_passes(program: &PassProgram, dialect: Dialect, out: &mut dyn Write) -> Result<(), WriteError> {
     check_axes(&program.axes, dialect)?;
-    let blocks = Blocks { program, dialect, out: Vec::new() }.all()?;
+    let travels = program.axes.iter().map(MachineAxis::printed_travel).collect();
+    let blocks = Blocks { program, dialect, travels, out: Vec::new() }.all()?;
     let step = dialect.numbering(blocks.len());
     for line in dialect.opening() {
         writeln!(out, "{line}")?;
@@ -117,6 +120,8 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
 struct Blocks<'p> {
     program: &'p PassProgram,
     dialect: Dialect,
+    /// Of each axis, as programs count it.
+    travels: Vec<[f64; 2]>,
     out: Vec<String>,
 }
 
@@ -167,9 +172,12 @@ impl Blocks<'_> {
                 let inverse_time = self.dialect.inverse_time();
                 self.out.extend(inverse_time.map(|[on, _]| on.to_owned()));
                 for row in 1..=last {
-                    let words = self.axis_words(pass, row)?.join(" ");
-                    let feed = self.feed_of_axes(pass, row)?;
-                    self.out.push(format!("{straight} {words} F{feed:.*}", self.dialect.feed_decimals()));
+                    let mut block = String::with_capacity(BLOCK);
+                    block.push_str(straight);
+                    self.push_axis_words(pass, row, &mut block)?;
+                    block.push_str(" F");
+                    push_fixed(self.feed_of_axes(pass, row)?, self.dialect.feed_decimals(), &mut block);
+                    self.out.push(block);
                 }
                 self.out.extend(inverse_time.map(|[_, off]| off.to_owned()));
             }
@@ -183,6 +191,17 @@ impl Blocks<'_> {
             }
         }
         self.retract()
+    }
+
+    /// Each with a space before it.
+    fn push_axis_words(&self, pass: &ProgramPass, row: usize, block: &mut String) -> Result<(), NcError> {
+        let place = || format!("row {} of {}", row + 1, pass.name);
+        let axes = self.program.axes.iter().zip(&self.travels).zip(&pass.rows[row]);
+        for ((axis, travel), position) in axes {
+            block.push(' ');
+            push_axis_word((axis, *travel), *position, self.dialect, &place, block)?;
+        }
+        Ok(())
     }
 
     fn axis_words(&self, pass: &ProgramPass, row: usize) -> Result<Vec<String>, NcError> {

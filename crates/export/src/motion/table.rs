@@ -2,7 +2,7 @@
 
 use crate::files::error::Malformed;
 use crate::points::dataset::{Header, Unit, Unknown};
-use crate::text::number::{degrees, fixed, plain};
+use crate::text::number::{degrees, plain, push_fixed};
 use crate::text::one_line;
 
 /// How positions of files of data are to be read.
@@ -103,10 +103,22 @@ impl MachineAxis {
         if self.reversed { self.offset - position } else { self.offset + position }
     }
 
-    /// A position as NC programs write it: as the control counts, with the axis's decimals, without a negative zero.
-    pub(crate) fn printed(&self, position: f64) -> String {
+    /// A position as NC programs write it: as the control counts, with the axis's decimals, without a negative zero. Returns what stands there.
+    pub(crate) fn print(&self, position: f64, text: &mut String) -> f64 {
         let programmed = self.unit().written(self.programmed(position));
-        fixed(programmed, usize::from(self.decimals))
+        push_fixed(programmed, usize::from(self.decimals), text)
+    }
+
+    /// The same alone.
+    pub(crate) fn printed(&self, position: f64) -> String {
+        let mut text = String::new();
+        self.print(position, &mut text);
+        text
+    }
+
+    /// Between which numbers of NC programs it stays; infinite without a travel.
+    pub(crate) fn printed_travel(&self) -> [f64; 2] {
+        self.travel.map_or([f64::NEG_INFINITY, f64::INFINITY], |travel| self.written(self.programmed_ends(travel)))
     }
 }
 

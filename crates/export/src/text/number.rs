@@ -10,11 +10,50 @@ pub(crate) fn plain(value: f64) -> f64 {
 
 /// So many decimals, for people; what they show as zero has no sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
-    let text = format!("{value:.decimals$}");
-    match text.strip_prefix('-') {
-        Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size.to_owned(),
-        _ => text,
+    let mut text = String::new();
+    push_fixed(value, decimals, &mut text);
+    text
+}
+
+/// Puts [`fixed`] behind a text; returns the number that stands there.
+pub(crate) fn push_fixed(value: f64, decimals: usize, text: &mut String) -> f64 {
+    /// Up to here a product is off by so little that it shows on which side of a tie it lies.
+    const MOST: f64 = 1e12;
+    const BESIDE_TIE: f64 = 1e-3;
+    const POWERS: [f64; 10] = [1.0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9];
+    let scaled = POWERS.get(decimals).map_or(f64::NAN, |power| value.abs() * power);
+    if scaled < MOST && (scaled.fract() - 0.5).abs() > BESIDE_TIE {
+        let rounded = scaled.round();
+        let sign = if value < 0.0 && rounded > 0.0 { -1.0 } else { 1.0 };
+        push_digits(rounded as u64, sign < 0.0, decimals, text);
+        return sign * (rounded / POWERS[decimals]);
     }
+    let plain = format!("{value:.decimals$}");
+    let shown = match plain.strip_prefix('-') {
+        Some(size) if size.bytes().all(|c| matches!(c, b'0' | b'.')) => size,
+        _ => &plain,
+    };
+    text.push_str(shown);
+    shown.parse().unwrap_or(f64::NAN)
+}
+
+/// A whole number with a point before its last `decimals` digits.
+fn push_digits(mut whole: u64, is_negative: bool, decimals: usize, text: &mut String) {
+    let mut letters = [b'0'; 24];
+    let (mut at, mut digit) = (letters.len(), 0);
+    while whole > 0 || digit <= decimals {
+        if digit == decimals && decimals > 0 {
+            at -= 1;
+            letters[at] = b'.';
+        }
+        at -= 1;
+        letters[at] = b'0' + (whole % 10) as u8;
+        (whole, digit) = (whole / 10, digit + 1);
+    }
+    if is_negative {
+        text.push('-');
+    }
+    text.extend(letters[at..].iter().map(|letter| char::from(*letter)));
 }
 
 /// The shortest text that reads back as the same bits (a negative zero becomes `0`).
@@ -101,6 +140,34 @@ pub fn residual(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fixed_numbers_are_those_of_the_formatter() {
+        let plain = |value: f64, decimals: usize| {
+            let text = format!("{value:.decimals$}");
+            let is_zero = text.bytes().all(|c| matches!(c, b'-' | b'0' | b'.'));
+            if is_zero { text.trim_start_matches('-').to_owned() } else { text }
+        };
+        let mut values =
+            vec![0.0, -0.0, 0.5, 1.5, 2.5, 0.125, -0.00005, 0.00005, 1e11, 9.99995, 1e15, 1e300, 5e-324, -99.99999];
+        // numbers of all sizes, and decimal ties, which no binary number is but by chance
+        let mut state = 1u64;
+        for k in 0..20_000 {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            let part = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
+            values.push(part * 10f64.powi(k % 14 - 3));
+            values.push((part * 1e6).round() / 1e4 + 0.00005);
+        }
+        for value in values {
+            for decimals in [0, 1, 3, 4, 5, 6, 9, 12] {
+                let mut text = "x".to_owned();
+                let number = push_fixed(value, decimals, &mut text);
+                assert_eq!(text[1..], plain(value, decimals), "{value:e} {decimals}");
+                assert_eq!(Ok(number), text[1..].parse(), "{value:e} {decimals}");
+            }
+        }
+        assert_eq!([fixed(f64::NAN, 2), fixed(f64::NEG_INFINITY, 2)], ["NaN", "-inf"]);
+    }
 
     #[test]
     fn shortest_reads_back_to_the_bit() {

@@ -1,7 +1,7 @@
 //! The axes of a five-axis machine at a pose of a cutter, which its own turn does not change.
 
 use flank_expr::geometry::{Axis, Chain, Step, Vector3 as Symbolic};
-use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
+use flank_expr::{Expr, Graph, InstructionSet, LANES, LaneEvaluator, LaneTape, ScalarEvaluator, Tape};
 use nalgebra::Vector3;
 
 use crate::conversion::explicit::{ExplicitProblem, NotExplicit};
@@ -13,7 +13,7 @@ const SOMEWHERE: [f64; 5] = [1.0, 2.0, 3.0, 0.3, 0.4];
 /// The axes of a machine in closed form.
 #[derive(Clone, Debug)]
 pub struct MillAxes {
-    elbows: [Tape; 2],
+    elbows: [LaneTape; 2],
     forward: Tape,
     axes: usize,
     pole: [f64; 3],
@@ -52,7 +52,7 @@ impl MillAxes {
         let along = Symbolic::constant(graph, [0.0, 0.0, 1.0]);
         let pose = t_work_tool.point(Symbolic::zero(graph)).0.into_iter().chain(t_work_tool.direction(along).0);
         Ok(MillAxes {
-            elbows: both.formulas.each_ref().map(|formulas| tape(formulas)),
+            elbows: both.formulas.each_ref().map(|formulas| LaneTape::new(&tape(formulas))),
             forward: Tape::new(&pose.collect::<Vec<_>>(), axes).expect("nothing is unbound"),
             axes: axes.len(),
             pole: both.pole,
@@ -69,20 +69,20 @@ impl MillAxes {
 
     /// The same at many poses: origin of the tool and axis towards the spindle.
     pub fn at_each(&self, poses: &[[f64; 6]], elbow: usize) -> Vec<Vec<f64>> {
-        let mut evaluator = ScalarEvaluator::new(&self.elbows[elbow]);
-        let at = |[x, y, z, i, j, k]: &[f64; 6]| {
-            let out_of_spindle = -Vector3::new(*i, *j, *k);
-            let least = out_of_spindle.iamin();
-            let across = out_of_spindle.cross(&Vector3::ith(least, 1.0)).normalize() * self.across;
-            let mut inputs = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, *x, *y, *z];
-            for k in 0..3 {
-                (inputs[k], inputs[3 + k]) = (out_of_spindle[k], across[k]);
+        let mut evaluator = LaneEvaluator::new(&self.elbows[elbow], InstructionSet::widest());
+        let mut found = Vec::with_capacity(poses.len());
+        for some in poses.chunks(LANES) {
+            for (lane, [x, y, z, i, j, k]) in some.iter().enumerate() {
+                let out_of_spindle = -Vector3::new(*i, *j, *k);
+                let least = out_of_spindle.iamin();
+                let across = out_of_spindle.cross(&Vector3::ith(least, 1.0)).normalize() * self.across;
+                let inputs = out_of_spindle.iter().chain(&across).chain([x, y, z]);
+                inputs.enumerate().for_each(|(k, value)| evaluator.input(k)[lane] = *value);
             }
-            let mut out = vec![0.0; self.axes];
-            evaluator.run(&inputs, &mut out);
-            out
-        };
-        poses.iter().map(at).collect()
+            evaluator.run_first(some.len());
+            found.extend((0..some.len()).map(|lane| (0..self.axes).map(|k| evaluator.output(k)[lane]).collect()));
+        }
+        found
     }
 
     /// Origin and axis of the cutter, towards the spindle, in the work's frame where the axes stand so.

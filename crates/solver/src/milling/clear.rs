@@ -4,7 +4,7 @@
 //! a box of both shares of the surface and the share of the block, less how far the surface and the motion reach from there; what that does
 //! not settle is halved. How fast surface and motion change is bounded by the coefficients of their polynomials.
 
-use crate::milling::distance::{Obstacle, ToolBody};
+use crate::milling::distance::{Obstacle, Shape, ToolBody};
 use crate::milling::outline::OutlinePiece;
 use crate::milling::series::PoseSeries;
 
@@ -34,7 +34,7 @@ pub enum Clear {
 #[derive(Clone, Debug)]
 pub struct ClearProof<'o> {
     obstacle: &'o Obstacle,
-    body: ToolBody,
+    body: Shape,
     /// How fast a point of the surface moves with each share at the most, mm.
     rates: [f64; 2],
 }
@@ -58,7 +58,7 @@ impl<'o> ClearProof<'o> {
         });
         let top = end.filter(|end| end[0] > 0.0).map(|end| OutlinePiece::Line { from: end, to: [0.0, end[1]] });
         body.pieces.extend(top);
-        ClearProof { obstacle, body, rates: obstacle.surface.rates() }
+        ClearProof { obstacle, body: body.shape(), rates: obstacle.surface.rates() }
     }
 
     /// Whether the body is nowhere nearer than `limit` on a block, after `most` boxes at the most.

@@ -3,8 +3,12 @@
 use crate::milling::outline::{OutlinePiece, meridian};
 use crate::milling::series::PoseField;
 
-/// Points of a surface that are looked at before the nearest one is solved.
-const COARSE: [usize; 2] = [13, 25];
+/// Rows and columns of points of a surface that are looked at before the nearest one is solved ...
+const POINTS: [usize; 2] = [49, 97];
+/// ... of which every so many are enough for what has no bound.
+const COARSE: usize = 4;
+/// Points of a part of a surface that are looked at one by one, in each direction.
+const FEW: usize = 4;
 /// Shares by which a surface is left and right of a point to tell how the distance changes.
 const APART: f64 = 1e-3;
 /// Newton's steps at the most.
@@ -32,61 +36,123 @@ pub struct Nearest {
 #[derive(Clone, Debug)]
 pub struct Obstacle {
     pub(super) surface: PoseField,
-    coarse: Vec<([f64; 2], [f64; 3])>,
+    points: Vec<[f64; 3]>,
+    /// Parts of the surface, each before those that it is cut into; the first is all of it.
+    parts: Vec<Part>,
     /// No point of the surface is farther from the nearest of those than this, mm.
     reach: f64,
+}
+
+/// Points of a surface between rows and columns.
+#[derive(Clone, Debug)]
+struct Part {
+    /// One of them, and no other is farther from it, mm.
+    middle: usize,
+    radius: f64,
+    rows: [usize; 2],
+    columns: [usize; 2],
+    /// The two parts that it is cut into; none of few points.
+    halves: Option<[usize; 2]>,
 }
 
 impl ToolBody {
     /// The distance of a point where the cutter stands so, mm; negative inside.
     pub fn distance(&self, pose: &[f64; 6], point: [f64; 3]) -> f64 {
+        self.shape().distance(pose, point)
+    }
+
+    /// The same for many points.
+    pub(crate) fn shape(&self) -> Shape {
+        Shape { pieces: self.pieces.iter().map(ShapePiece::new).collect() }
+    }
+}
+
+/// A body with what its pieces have in common for all points.
+#[derive(Clone, Debug)]
+pub(crate) struct Shape {
+    pieces: Vec<ShapePiece>,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum ShapePiece {
+    Line {
+        from: [f64; 2],
+        to: [f64; 2],
+        /// From one end to the other, over the square of the length.
+        along: [f64; 2],
+    },
+    Arc {
+        center: [f64; 2],
+        radius: f64,
+        /// Sines and cosines of the angles of its ends.
+        ends: [[f64; 2]; 2],
+        /// The heights of its ends: an angle is lowest at zero, and an arc rises all the way.
+        heights: [f64; 2],
+    },
+}
+
+impl Shape {
+    /// The distance of a point where the cutter stands so, mm; negative inside.
+    pub(crate) fn distance(&self, pose: &[f64; 6], point: [f64; 3]) -> f64 {
         let [rho, z] = meridian(pose, point);
-        let away = self.pieces.iter().map(|piece| away(piece, [rho, z])).fold(f64::INFINITY, f64::min);
-        let crossed: u32 = self.pieces.iter().map(|piece| crossings(piece, [rho, z])).sum();
-        if crossed % 2 == 1 { -away } else { away }
+        let (mut square, mut crossed) = (f64::INFINITY, false);
+        for piece in &self.pieces {
+            square = square.min(piece.square_away([rho, z]));
+            crossed ^= piece.is_crossed([rho, z]);
+        }
+        if crossed { -square.sqrt() } else { square.sqrt() }
     }
 }
 
-/// The distance of a point from a piece.
-fn away(piece: &OutlinePiece, [rho, z]: [f64; 2]) -> f64 {
-    match *piece {
-        OutlinePiece::Line { from, to } => {
-            let along = [to[0] - from[0], to[1] - from[1]];
-            let square = along[0] * along[0] + along[1] * along[1];
-            let share = ((rho - from[0]) * along[0] + (z - from[1]) * along[1]) / square;
-            let share = share.clamp(0.0, 1.0);
-            (rho - from[0] - share * along[0]).hypot(z - from[1] - share * along[1])
-        }
-        OutlinePiece::Arc { center, radius, between } => {
-            let [out, up] = [rho - center[0], z - center[1]];
-            let angle = out.atan2(-up);
-            if angle >= between[0] && angle <= between[1] {
-                return (out.hypot(up) - radius).abs();
+impl ShapePiece {
+    fn new(piece: &OutlinePiece) -> ShapePiece {
+        match *piece {
+            OutlinePiece::Line { from, to } => {
+                let along = [to[0] - from[0], to[1] - from[1]];
+                let square = along[0] * along[0] + along[1] * along[1];
+                ShapePiece::Line { from, to, along: along.map(|part| part / square) }
             }
-            let end = |angle: f64| (out - radius * angle.sin()).hypot(up + radius * angle.cos());
-            end(between[0]).min(end(between[1]))
+            OutlinePiece::Arc { center, radius, between } => {
+                let ends = between.map(|angle| [angle.sin(), angle.cos()]);
+                ShapePiece::Arc { center, radius, ends, heights: ends.map(|[_, cosine]| center[1] - radius * cosine) }
+            }
         }
     }
-}
 
-/// How often the ray from a point away from the axis meets a piece; a lower end belongs to it, an upper one does not.
-fn crossings(piece: &OutlinePiece, [rho, z]: [f64; 2]) -> u32 {
-    match *piece {
-        OutlinePiece::Line { from, to } => {
-            let is_between = (from[1] <= z) != (to[1] <= z);
-            let at = || from[0] + (z - from[1]) / (to[1] - from[1]) * (to[0] - from[0]);
-            u32::from(is_between && at() > rho)
-        }
-        OutlinePiece::Arc { center, radius, between } => {
-            // an angle is lowest at zero: an arc rises all the way
-            let height = |angle: f64| center[1] - radius * angle.cos();
-            let [low, high] = between.map(height);
-            if !((low <= z) && (z < high)) {
-                return 0;
+    /// The square of the distance of a point.
+    fn square_away(&self, [rho, z]: [f64; 2]) -> f64 {
+        let squared = |[out, up]: [f64; 2]| out * out + up * up;
+        match *self {
+            ShapePiece::Line { from, to, along } => {
+                let share = ((rho - from[0]) * along[0] + (z - from[1]) * along[1]).clamp(0.0, 1.0);
+                let foot = [0, 1].map(|k| from[k] + share * (to[k] - from[k]));
+                squared([rho - foot[0], z - foot[1]])
             }
-            let up = z - center[1];
-            let out = (radius * radius - up * up).max(0.0).sqrt();
-            u32::from(center[0] + out > rho)
+            ShapePiece::Arc { center, radius, ends, .. } => {
+                let [out, up] = [rho - center[0], z - center[1]];
+                // from the first end on, and up to the last: sines of the differences of angles
+                let [[s0, c0], [s1, c1]] = ends;
+                if out * c0 + up * s0 >= 0.0 && -up * s1 - out * c1 >= 0.0 {
+                    return (squared([out, up]).sqrt() - radius).powi(2);
+                }
+                let end = |[sine, cosine]: [f64; 2]| squared([out - radius * sine, up + radius * cosine]);
+                end(ends[0]).min(end(ends[1]))
+            }
+        }
+    }
+
+    /// Whether the ray from a point away from the axis meets it; a lower end belongs to it, an upper one does not.
+    fn is_crossed(&self, [rho, z]: [f64; 2]) -> bool {
+        match *self {
+            ShapePiece::Line { from, to, .. } => {
+                let is_between = (from[1] <= z) != (to[1] <= z);
+                is_between && from[0] + (z - from[1]) / (to[1] - from[1]) * (to[0] - from[0]) > rho
+            }
+            ShapePiece::Arc { center, radius, heights: [low, high], .. } => {
+                let up = z - center[1];
+                let out = || (radius * radius - up * up).max(0.0).sqrt();
+                low <= z && z < high && center[0] + out() > rho
+            }
         }
     }
 }
@@ -94,30 +160,67 @@ fn crossings(piece: &OutlinePiece, [rho, z]: [f64; 2]) -> u32 {
 impl Obstacle {
     /// Of a surface as polynomials of two shares.
     pub fn new(surface: PoseField) -> Obstacle {
-        let share = |k: usize, at: usize| at as f64 / (COARSE[k] - 1) as f64;
-        let places = (0..COARSE[0]).flat_map(|i| (0..COARSE[1]).map(move |j| [share(0, i), share(1, j)]));
-        let point = |shares: [f64; 2]| {
-            let [x, y, z, ..] = surface.at(shares);
-            (shares, [x, y, z])
+        let [rows, columns] = POINTS;
+        let row = |i: usize| {
+            let row = surface.pass(i as f64 / (rows - 1) as f64);
+            (0..columns).map(move |j| row.at(j as f64 / (columns - 1) as f64)).map(|[x, y, z, ..]| [x, y, z])
         };
-        let coarse: Vec<([f64; 2], [f64; 3])> = places.map(point).collect();
-        let apart = |a: usize, b: usize| (0..3).map(|k| (coarse[a].1[k] - coarse[b].1[k]).powi(2)).sum::<f64>().sqrt();
-        let [rows, columns] = COARSE;
+        let points: Vec<[f64; 3]> = (0..rows).flat_map(row).collect();
+        let apart = |a: usize, b: usize| apart(points[a], points[b]);
         let steps = (0..rows - 1).flat_map(|i| (0..columns - 1).map(move |j| i * columns + j));
         let diagonal = steps.map(|at| apart(at, at + columns + 1).max(apart(at + 1, at + columns)));
         // half a diagonal, and half of that again for what lies beside the chord
         let reach = 0.75 * diagonal.fold(0.0, f64::max);
-        Obstacle { surface, coarse, reach }
+        let mut parts = Vec::new();
+        cut(&points, [0, rows], [0, columns], &mut parts);
+        Obstacle { surface, points, parts, reach }
+    }
+
+    /// The shares of one of the points.
+    fn shares(&self, point: usize) -> [f64; 2] {
+        let [rows, columns] = POINTS;
+        [(point / columns) as f64 / (rows - 1) as f64, (point % columns) as f64 / (columns - 1) as f64]
+    }
+
+    /// The point of a part that is nearest to a body, if it is nearer than the best one so far.
+    fn nearest_in(&self, part: &Part, distance: &dyn Fn(usize) -> f64, best: &mut (f64, usize)) {
+        let Some(halves) = part.halves else {
+            for row in part.rows[0]..part.rows[1] {
+                for point in row * POINTS[1] + part.columns[0]..row * POINTS[1] + part.columns[1] {
+                    let here = distance(point);
+                    if here < best.0 {
+                        *best = (here, point);
+                    }
+                }
+            }
+            return;
+        };
+        // a distance changes by no more than the point moves
+        let mut halves = halves.map(|half| {
+            let half = &self.parts[half];
+            (distance(half.middle) - half.radius, half)
+        });
+        if halves[1].0 < halves[0].0 {
+            halves.swap(0, 1);
+        }
+        for (least, half) in halves {
+            if least < best.0 {
+                self.nearest_in(half, distance, best);
+            }
+        }
     }
 
     /// The place that is nearest to a body at a pose; `None` if none can be nearer than `limit`.
     pub fn nearest(&self, body: &ToolBody, pose: &[f64; 6], limit: f64) -> Option<Nearest> {
-        let distances = self.coarse.iter().map(|(shares, point)| (body.distance(pose, *point), *shares));
-        let (coarse, start) = distances.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let shape = body.shape();
+        let distance = |point: usize| shape.distance(pose, self.points[point]);
+        let mut best = (f64::INFINITY, 0);
+        self.nearest_in(&self.parts[0], &distance, &mut best);
+        let (coarse, start) = (best.0, self.shares(best.1));
         if coarse - self.reach > limit {
             return None;
         }
-        let found = self.solved(&|point| body.distance(pose, point), start);
+        let found = self.solved(&|point| shape.distance(pose, point), start);
         Some(if found.distance <= coarse { found } else { Nearest { distance: coarse, shares: start } })
     }
 
@@ -132,7 +235,9 @@ impl Obstacle {
             let room = ahead + by;
             if room > 0.0 { 0.5 * (square - by * by) / room } else { f64::INFINITY }
         };
-        let radii = self.coarse.iter().map(|(shares, place)| (radius(*place), *shares));
+        let coarse = |k: usize| (0..POINTS[k]).step_by(COARSE);
+        let some = coarse(0).flat_map(|i| coarse(1).map(move |j| i * POINTS[1] + j));
+        let radii = some.map(|point| (radius(self.points[point]), self.shares(point)));
         let (coarse, start) = radii.min_by(|a, b| a.0.total_cmp(&b.0)).filter(|(radius, _)| radius.is_finite())?;
         let found = self.solved(&radius, start);
         Some(if found.distance <= coarse { found } else { Nearest { distance: coarse, shares: start } })
@@ -140,16 +245,12 @@ impl Obstacle {
 
     /// Newton's method for the least value over the surface from a start, within the surface's ends.
     fn solved(&self, value: &dyn Fn([f64; 3]) -> f64, mut at: [f64; 2]) -> Nearest {
-        let distance = |shares: [f64; 2]| {
-            let [x, y, z, ..] = self.surface.at(shares);
-            value([x, y, z])
-        };
+        let distance = |shares: [f64; 2]| value(self.surface.position(shares));
         let mut here = distance(at);
         for _ in 0..MOST_STEPS {
-            let beside = |i: f64, j: f64| distance([at[0] + i * APART, at[1] + j * APART]);
-            let [w, e, s, n] = [beside(-1.0, 0.0), beside(1.0, 0.0), beside(0.0, -1.0), beside(0.0, 1.0)];
+            let [[a, w, b], [s, _, n], [c, e, d]] = self.surface.around(at, APART).map(|row| row.map(value));
             let (g, h) = ([0.5 * (e - w), 0.5 * (n - s)], [e - 2.0 * here + w, n - 2.0 * here + s]);
-            let mixed = 0.25 * (beside(1.0, 1.0) - beside(1.0, -1.0) - beside(-1.0, 1.0) + beside(-1.0, -1.0));
+            let mixed = 0.25 * (d - c - b + a);
             let next = stepped(at, g, h, mixed);
             let mut share = 1.0;
             let mut taken = None;
@@ -172,6 +273,32 @@ impl Obstacle {
         }
         Nearest { distance: here, shares: at }
     }
+}
+
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Adds a part with all parts of it, and says where it stands.
+fn cut(points: &[[f64; 3]], rows: [usize; 2], columns: [usize; 2], parts: &mut Vec<Part>) -> usize {
+    let middle = (rows[0] + rows[1]) / 2 * POINTS[1] + (columns[0] + columns[1]) / 2;
+    let all = (rows[0]..rows[1]).flat_map(|i| (columns[0]..columns[1]).map(move |j| i * POINTS[1] + j));
+    let radius = all.map(|point| apart(points[point], points[middle])).fold(0.0, f64::max);
+    let number = parts.len();
+    parts.push(Part { middle, radius, rows, columns, halves: None });
+    let [high, wide] = [rows[1] - rows[0], columns[1] - columns[0]];
+    if high > FEW || wide > FEW {
+        let between = |[from, to]: [usize; 2]| (from + to) / 2;
+        let halves = if wide > high {
+            let at = between(columns);
+            [[columns[0], at], [at, columns[1]]].map(|columns| cut(points, rows, columns, parts))
+        } else {
+            let at = between(rows);
+            [[rows[0], at], [at, rows[1]]].map(|rows| cut(points, rows, columns, parts))
+        };
+        parts[number].halves = Some(halves);
+    }
+    number
 }
 
 /// One step of Newton's method on a square, in units of shares; slopes and bends are by [`APART`].

@@ -1,6 +1,6 @@
 //! A surface at a point with its steps along two coordinates.
 
-use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, InstructionSet, LANES, LaneEvaluator, LaneTape, Tape, TapeError};
 
 use crate::surface::bound::BoundSurface;
 
@@ -11,7 +11,7 @@ const NO_PIVOT: f64 = 1e-12;
 #[derive(Clone, Debug)]
 pub struct SurfaceFrames {
     unknowns: usize,
-    tape: Tape,
+    tape: LaneTape,
 }
 
 /// A point of a surface, in the surface's frame.
@@ -44,7 +44,7 @@ impl SurfaceFrames {
         let equations = surface.constraints.iter().copied().chain(coordinates);
         let slopes = equations.chain(point.iter().copied()).flat_map(|f| p.iter().map(move |p| f.derivative(*p)));
         let outputs: Vec<Expr<'g>> = point.iter().copied().chain(slopes).collect();
-        Ok(SurfaceFrames { unknowns: p.len(), tape: Tape::new(&outputs, p)? })
+        Ok(SurfaceFrames { unknowns: p.len(), tape: LaneTape::new(&Tape::new(&outputs, p)?) })
     }
 
     /// At many points of the surface, given by their unknowns; `None` where the coordinates do not fix a point.
@@ -52,15 +52,24 @@ impl SurfaceFrames {
     /// # Panics
     /// If there is not one number for each unknown.
     pub fn at<'u>(&self, points: impl Iterator<Item = &'u [f64]>) -> Vec<Option<SurfaceFrame>> {
-        let mut evaluator = ScalarEvaluator::new(&self.tape);
+        let mut evaluator = LaneEvaluator::new(&self.tape, InstructionSet::widest());
         let mut out = vec![0.0; self.tape.output_count()];
-        let mut scratch = Scratch::new(self.unknowns);
-        points
-            .map(|unknowns| {
-                evaluator.run(unknowns, &mut out);
-                self.frame(&out, &mut scratch)
-            })
-            .collect()
+        let (mut scratch, mut found) = (Scratch::new(self.unknowns), Vec::new());
+        let (mut points, mut waiting) = (points.peekable(), 0);
+        while let Some(unknowns) = points.next() {
+            unknowns.iter().enumerate().for_each(|(k, value)| evaluator.input(k)[waiting] = *value);
+            waiting += 1;
+            if waiting < LANES && points.peek().is_some() {
+                continue;
+            }
+            evaluator.run_first(waiting);
+            for lane in 0..waiting {
+                out.iter_mut().enumerate().for_each(|(k, out)| *out = evaluator.output(k)[lane]);
+                found.push(self.frame(&out, &mut scratch));
+            }
+            waiting = 0;
+        }
+        found
     }
 
     fn frame(&self, out: &[f64], scratch: &mut Scratch) -> Option<SurfaceFrame> {

@@ -132,6 +132,33 @@ impl PoseField {
         sum
     }
 
+    /// The position at shares.
+    pub(crate) fn position(&self, shares: [f64; 2]) -> [f64; 3] {
+        let [x, y, z, ..] = self.at(shares);
+        [x, y, z]
+    }
+
+    /// The positions so far before shares, at them, and so far behind, across the passes and along them.
+    pub(crate) fn around(&self, shares: [f64; 2], apart: f64) -> [[[f64; 3]; 3]; 3] {
+        let weights = |k: usize| [-1.0, 0.0, 1.0].map(|by| Chart::weights_at(&self.nodes[k], shares[k] + by * apart));
+        let (by_row, by_column) = (weights(0), weights(1));
+        let mut sum = [[[0.0; 3]; 3]; 3];
+        for (row, values) in self.values.chunks(self.counts[1]).enumerate() {
+            let mut inner = [[0.0; 3]; 3];
+            for (column, value) in values.iter().enumerate() {
+                for (inner, weights) in inner.iter_mut().zip(&by_column) {
+                    (0..3).for_each(|i| inner[i] += weights[column] * value[i]);
+                }
+            }
+            for (sum, weights) in sum.iter_mut().zip(&by_row) {
+                for (sum, inner) in sum.iter_mut().zip(&inner) {
+                    (0..3).for_each(|i| sum[i] += weights[row] * inner[i]);
+                }
+            }
+        }
+        sum
+    }
+
     /// The pass at a share.
     pub fn pass(&self, share: f64) -> PoseSeries {
         let [rows, columns] = self.counts;

@@ -1,6 +1,6 @@
 //! What all ways of a cutter together leave over a point of a surface.
 
-use crate::milling::distance::ToolBody;
+use crate::milling::distance::{Shape, ToolBody};
 use crate::milling::height::{NormalLine, lowest};
 use crate::milling::outline::{Cutter, OutlinePiece};
 use crate::milling::series::PoseSeries;
@@ -17,7 +17,7 @@ const BENT: f64 = 1.25;
 pub struct SweptCutter {
     ways: Vec<Way>,
     cutter: Cutter,
-    body: ToolBody,
+    body: Shape,
     ball: Ball,
 }
 
@@ -77,7 +77,7 @@ impl SweptCutter {
         SweptCutter {
             ways: ways.into_iter().map(way).collect(),
             cutter: cutter.clone(),
-            body: body(&cutter.pieces),
+            body: body(&cutter.pieces).shape(),
             ball,
         }
     }
