@@ -157,11 +157,15 @@ fn program_20000(bencher: Bencher) {
         decimals: if k > 2 { 5 } else { 4 },
         travel: None,
     };
-    let pass = |(number, (rows, tips)): (usize, (&[Vec<f64>], &[[f64; 6]]))| ProgramPass {
-        name: format!("pass {}", number + 1),
-        rows: rows.to_vec(),
-        tips: tips.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
-        ways: vec![0.25; rows.len() - 1],
+    let pass = |number: usize| {
+        let [from, to] = [number, number + 1].map(|k| k * POSITIONS[1]);
+        let places = &rows[from..to];
+        ProgramPass {
+            name: format!("pass {}", number + 1),
+            rows: along[from..to].to_vec(),
+            tips: places.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
+            ways: vec![0.25; POSITIONS[1] - 1],
+        }
     };
     let program = PassProgram {
         header: Header {
@@ -174,7 +178,7 @@ fn program_20000(bencher: Bencher) {
         title: String::new(),
         axes: ["X", "Y", "Z", "A", "C"].into_iter().enumerate().map(axis).collect(),
         retract: (2, 200.0),
-        passes: along.chunks(POSITIONS[1]).zip(rows.chunks(POSITIONS[1])).enumerate().map(pass).collect(),
+        passes: (0..rows.len() / POSITIONS[1]).map(pass).collect(),
         feed: 600.0,
         spindle: None,
         words: WordsOf::Axes,

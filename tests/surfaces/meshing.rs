@@ -252,8 +252,13 @@ fn helical_gears() {
 
 #[test]
 fn a_pinion_in_a_face_gear() {
-    Pair { spec: "specs/bodies/face_gear_pair_body.chain", solids: ["pinion", "gear"], teeth: [23, 108], spacing: 0.12 }
-        .check(3);
+    Pair {
+        spec: "specs/bodies/face_gear_pair_body.chain",
+        solids: ["pinion", "gear"],
+        teeth: [23, 108],
+        spacing: 0.12,
+    }
+    .check(3);
 }
 
 /// The same with the pinion's space turned inside out by a mirror: what a kernel calls valid.

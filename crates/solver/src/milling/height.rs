@@ -277,7 +277,7 @@ impl Bottom {
     }
 
     /// How far on the way the line meets the circle the other time, if it meets it here.
-    fn to_other(&self) -> f64 {
+    fn to_other(self) -> f64 {
         (-2.0 * self.off_1 / self.off_2).clamp(-2.0, 2.0)
     }
 }
