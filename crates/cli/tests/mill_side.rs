@@ -94,10 +94,11 @@ fn one_pass_is_shown_as_one() {
     let run = flank(&["plot", &spec, "--job", "milled", "--what", "milling", "--format", "svg", "--out", place]);
     assert!(run.status.success(), "{}", text(&run.stderr));
     let svg = std::fs::read_to_string(out.join("milled.milling.svg")).expect("a picture");
-    for words in ["what the pass leaves", "across the pass, where most is left"] {
+    for words in ["what the pass leaves", "across the pass, in its middle"] {
         assert!(svg.contains(&format!("aria-label=\"{words}\"")), "{words}");
     }
     assert!(!svg.contains("ridge"), "a pass alone leaves none");
+    assert!(!svg.contains("0.000 \u{b5}m"), "what is rounding is not marked");
     let (_, told, _) = mill(&spec, &out, &[]);
     assert!(told.contains("side leaves  at most 0.0000 um\n"), "{told}");
 }

@@ -24,6 +24,8 @@ const APART: f64 = 7.0;
 const STEEL: Colour = Colour([176, 186, 196]);
 const DASHES: [f64; 2] = [5.0, 4.0];
 const RING: f64 = 5.0;
+/// The scale of a section whose heights are rounding, um.
+const FLAT: f64 = 0.1;
 /// How much of the sheet's width the map takes, and of its height the upper row.
 const SHARES: [f64; 2] = [0.58, 0.58];
 
@@ -40,11 +42,9 @@ pub struct MillingDrawing {
     pub ridges: Patch,
     /// The contacts of each pass, in the frame of the ridges.
     pub passes: Vec<Vec<[f64; 3]>>,
-    /// The highest ridge.
-    pub highest: [f64; 3],
-    /// What is written there.
-    pub highest_text: String,
-    /// Across the passes at the highest ridge.
+    /// The highest ridge, and what is written there; none where heights are rounding.
+    pub highest: Option<([f64; 3], String)>,
+    /// Across the passes at the highest ridge, or in the middle.
     pub section: RidgeSection,
     /// What happens along a pass.
     pub charts: Vec<PassChart>,
@@ -59,8 +59,8 @@ pub struct RidgeSection {
     pub passes: Vec<Vec<[f64; 2]>>,
     /// What all of them leave.
     pub left: Vec<[f64; 2]>,
-    /// The ridge.
-    pub ridge: [f64; 2],
+    /// How high the ridge is, at nothing across the passes; none where heights are rounding.
+    pub ridge: Option<f64>,
 }
 
 /// Numbers along a pass.
@@ -150,13 +150,14 @@ impl MillingDrawing {
         let key = Rect { left: chart.rect.left, top, right: rect.right, bottom: top + KEY };
         maps::draw_key(levels, &unit, key, sheet);
         panel.draw_words(&chart, &mut Occupancy::new(rect.right, rect.bottom), sheet);
-        if let Some(at) = place(&self.highest) {
+        let highest = self.highest.as_ref().and_then(|(at, text)| Some((place(at)?, text)));
+        if let Some((at, text)) = highest {
             sheet.polygon(&ring(at), WHITE, palette::RED, 2.0);
             // above the ring, where no values stand, or below it
             let is_right = at[0] > chart.rect.middle()[0];
             let down = if at[1] - 26.0 > chart.rect.top { -12.0 } else { 24.0 };
             let (anchor, aside) = if is_right { (Anchor::End, RING) } else { (Anchor::Start, -RING) };
-            sheet.text([at[0] + aside, at[1] + down], anchor, 13.0, palette::RED, &one_line(&self.highest_text));
+            sheet.text([at[0] + aside, at[1] + down], anchor, 13.0, palette::RED, &one_line(text));
         }
         Some(every)
     }
@@ -180,15 +181,18 @@ fn ring(at: Place) -> Vec<Place> {
 
 impl RidgeSection {
     fn draw(&self, is_one_pass: bool, rect: Rect, sheet: &mut Sheet) {
-        let title = match is_one_pass {
-            true => "across the pass, where most is left",
-            false => "cutter across the passes, at the highest ridge",
+        let title = match (is_one_pass, self.ridge) {
+            (true, Some(_)) => "across the pass, where most is left",
+            (true, None) => "across the pass, in its middle",
+            (false, Some(_)) => "cutter across the passes, at the highest ridge",
+            (false, None) => "cutter across the passes, in the middle",
         };
         head(title, &self.about, rect, sheet);
         let map = Rect { top: rect.top + HEAD, ..rect }.inside(chart::MARGINS);
         let [across, _] = chart::bounds(self.left.iter().copied());
-        let top = 2.2 * self.ridge[1].max(1e-9);
-        let chart = Chart::filling(map, [across, [-0.35 * self.ridge[1].max(1e-9), top]]);
+        let height = self.ridge.unwrap_or(FLAT);
+        let top = 2.2 * height;
+        let chart = Chart::filling(map, [across, [-0.35 * height, top]]);
         let place = |point: &[f64; 2]| chart.place(*point);
         let mut steel: Vec<Place> = self.left.iter().map(place).collect();
         let ends = [across[1], across[0]].map(|x| [chart.place([x, 0.0])[0], map.bottom]);
@@ -208,13 +212,16 @@ impl RidgeSection {
         sheet.dashes(&flank, DASHES, INK, 1.4);
         let titles = ["across the passes, mm along the flank", "over the flank, \u{b5}m"];
         chart.draw_axes(titles.map(|text| Title { text, numbered: true }), sheet);
-        let at = chart.place(self.ridge);
-        sheet.polygon(&ring(at), WHITE, palette::RED, 2.0);
         let call =
             |at: Place, text: String, colour: Colour| Call { at, text, size: 13.0, colour, rank: 0, farthest: 130.0 };
-        let height = format!("{} \u{b5}m", flank_export::fixed(self.ridge[1], 3));
-        let flank = call([flank[0][0] + 40.0, flank[0][1]], "flank".to_string(), INK);
-        calls::write(vec![call(at, height, palette::RED), flank], map, &mut taken, sheet);
+        let mut written = Vec::new();
+        if let Some(height) = self.ridge {
+            let at = chart.place([0.0, height]);
+            sheet.polygon(&ring(at), WHITE, palette::RED, 2.0);
+            written.push(call(at, format!("{} \u{b5}m", flank_export::fixed(height, 3)), palette::RED));
+        }
+        written.push(call([flank[0][0] + 40.0, flank[0][1]], "flank".to_string(), INK));
+        calls::write(written, map, &mut taken, sheet);
     }
 }
 

@@ -12,6 +12,7 @@ use super::patch::Patch as Milled;
 use super::plan::{Planner, evenly};
 use super::result::MillResult;
 use super::target::Target;
+use super::text::MEANT;
 use super::{Found, Worked, worked};
 use crate::project::failure::Failure;
 use crate::project::requests::MillRequest;
@@ -43,7 +44,7 @@ pub(crate) fn shown(
     let mut charts: Vec<PassChart> = clearances(job, &target, (found, gap.pass), session)?.into_iter().collect();
     charts.extend(rotary_axes(&target, found, gap.pass));
     let MillResult { job: name, milling, surface, cutter, .. } = &result;
-    let height = 1e3 * highest.height;
+    let mark = |height: f64| (position(&found.fields.surface.at(gap.shares)), format!("{} \u{b5}m", fixed(height, 3)));
     let drawing = MillingDrawing {
         header,
         title: format!("{name}: {milling} of {surface} with {cutter}"),
@@ -58,8 +59,7 @@ pub(crate) fn shown(
         ),
         ridges: ridges(&target, found),
         passes: found.milled.plan.shares[0].iter().map(|pass| contacts(found, *pass)).collect(),
-        highest: position(&found.fields.surface.at(highest.shares)),
-        highest_text: format!("{} \u{b5}m", fixed(height, 3)),
+        highest: gap.height.map(mark),
         section: gap.section(&target, found),
         charts,
     };
@@ -150,25 +150,29 @@ fn patch(target: &Target<'_, '_>, found: &Found<'_, '_>, all: &[super::LeftAt], 
     }
 }
 
-/// The passes beside the highest ridge.
+/// The passes beside the highest ridge, or in the middle where heights are rounding.
 struct Gap {
     /// The pass before it.
     pass: usize,
-    /// The ridge, or the highest place of a pass alone.
-    highest: super::LeftAt,
+    /// Where the ridge is, or the highest place of a pass alone.
+    shares: [f64; 2],
+    /// How high it is, um, unless that is rounding.
+    height: Option<f64>,
 }
 
 impl Gap {
     fn of_highest(found: &Found<'_, '_>, highest: super::LeftAt) -> Gap {
         let passes = &found.milled.plan.shares[0];
-        let after = passes.partition_point(|share| *share <= highest.shares[0]);
-        Gap { pass: after.saturating_sub(1).min(passes.len().saturating_sub(2)), highest }
+        let height = Some(1e3 * highest.height).filter(|height| height.abs() >= MEANT);
+        let shares = if height.is_some() { highest.shares } else { [0.5; 2] };
+        let after = passes.partition_point(|share| *share <= shares[0]);
+        Gap { pass: after.saturating_sub(1).min(passes.len().saturating_sub(2)), shares, height }
     }
 
     /// What the passes about it leave across the feed.
     fn section(&self, target: &Target<'_, '_>, found: &Found<'_, '_>) -> RidgeSection {
         let Found { cutter, fields, milled, swept, .. } = found;
-        let (passes, [across, along]) = (&milled.plan.shares[0], self.highest.shares);
+        let (passes, [across, along]) = (&milled.plan.shares[0], self.shares);
         // a pass alone covers all
         let step = passes.get(self.pass + 1).map_or(1.0, |next| next - passes[self.pass]);
         let [low, high] = [-STEPS, STEPS].map(|steps| (across + steps * step).clamp(0.0, 1.0));
@@ -197,12 +201,12 @@ impl Gap {
         let left = (0..PLACES).into_par_iter().filter_map(|k| swept.left(&lines[k]).map(|left| point(k, left.height)));
         RidgeSection {
             about: match passes.len() {
-                1 => target.place(self.highest.shares),
-                _ => format!("{}; passes {} and {}", target.place(self.highest.shares), self.pass + 1, self.pass + 2),
+                1 => target.place(self.shares),
+                _ => format!("{}; passes {} and {}", target.place(self.shares), self.pass + 1, self.pass + 2),
             },
             passes: near.map(cutter_on).collect(),
             left: left.collect(),
-            ridge: [0.0, 1e3 * self.highest.height],
+            ridge: self.height,
         }
     }
 }

@@ -10,7 +10,7 @@ use super::side::SideLeft;
 use crate::project::units;
 
 /// Heights below this, um, are rounding: positions are some 100 mm long.
-const MEANT: f64 = 1e-6;
+pub(super) const MEANT: f64 = 1e-6;
 
 impl fmt::Display for MillResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

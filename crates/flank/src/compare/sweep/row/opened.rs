@@ -148,17 +148,7 @@ impl<'o, 'g> Opened<'o, 'g> {
         });
         let family = family.expect("a job without errors leaves nothing unbound");
         let counts = [1, targets.len()];
-        Sampled {
-            family,
-            targets,
-            counts,
-            start: None,
-            nominal: Vec::new(),
-            tool: None,
-            blank: None,
-            memory: Mutex::default(),
-        }
-        .begun(&self.nominal())
+        Sampled::new(family, targets, counts).begun(&self.nominal())
     }
 
     /// Points at values of two coordinates, whatever else cuts some of them away.
@@ -170,16 +160,7 @@ impl<'o, 'g> Opened<'o, 'g> {
     ) -> Sampled {
         let coordinates = coordinates.each_ref().map(|coordinate| coordinate.value);
         let family = solve::family(surface, coordinates, (&self.settings, self.bindings), self.session);
-        Sampled {
-            family,
-            targets,
-            counts,
-            start: None,
-            nominal: Vec::new(),
-            tool: None,
-            blank: None,
-            memory: Mutex::default(),
-        }
+        Sampled::new(family, targets, counts)
     }
 
     /// The points of a surface beside those of another one.
@@ -255,6 +236,11 @@ impl<'o, 'g> Opened<'o, 'g> {
 }
 
 impl Sampled {
+    fn new(family: SurfaceFamily, targets: Vec<[f64; 2]>, counts: [usize; 2]) -> Sampled {
+        let (nominal, memory) = (Vec::new(), Mutex::default());
+        Sampled { family, targets, counts, start: None, nominal, tool: None, blank: None, memory }
+    }
+
     /// With what the job itself has, whose settings have these values.
     fn begun(self, values: &[f64]) -> Sampled {
         let points = self.searched(values);
