@@ -98,6 +98,7 @@ fn one_pass_is_shown_as_one() {
         assert!(svg.contains(&format!("aria-label=\"{words}\"")), "{words}");
     }
     assert!(!svg.contains("ridge"), "a pass alone leaves none");
+    assert!(!svg.contains("passes is drawn"), "all of them are");
     assert!(!svg.contains("0.000 \u{b5}m"), "what is rounding is not marked");
     let (_, told, _) = mill(&spec, &out, &[]);
     assert!(told.contains("side leaves  at most 0.0000 um\n"), "{told}");

@@ -167,6 +167,9 @@ impl MillingDrawing {
 fn every(lines: &[Vec<Place>]) -> usize {
     let middle = |line: &Vec<Place>| line[line.len() / 2];
     let [first, last] = [lines.first(), lines.last()].map(|line| line.map_or([0.0; 2], middle));
+    if lines.len() < 2 {
+        return 1;
+    }
     let room = (last[0] - first[0]).hypot(last[1] - first[1]);
     ((APART * lines.len() as f64 / room.max(1.0)).ceil() as usize).max(1)
 }

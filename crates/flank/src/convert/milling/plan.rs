@@ -204,7 +204,9 @@ impl Planner<'_, '_, '_> {
             };
             across.iter().zip(columns).map(at).collect()
         };
-        let found: Result<Vec<Vec<LeftAt>>, [f64; 2]> = gaps.into_par_iter().map(of_gap).collect();
+        // the first place is told, whichever thread finds one first
+        let found: Vec<Result<Vec<LeftAt>, [f64; 2]>> = gaps.into_par_iter().map(of_gap).collect();
+        let found: Result<Vec<Vec<LeftAt>>, [f64; 2]> = found.into_iter().collect();
         found.map(|found| found.concat()).map_err(|shares| {
             let place = self.target.place(shares);
             let message = format!("the passes beside {place} do not meet: what they leave between them is no ridge");
@@ -244,7 +246,9 @@ impl Planner<'_, '_, '_> {
             }
             Ok(ends)
         };
-        let all: Result<Vec<[LeftAt; 2]>, Lost> = which.par_iter().map(of_pass).collect();
+        // the first place is told, whichever thread finds one first
+        let all: Vec<Result<[LeftAt; 2], Lost>> = which.par_iter().map(of_pass).collect();
+        let all: Result<Vec<[LeftAt; 2]>, Lost> = all.into_iter().collect();
         let all = all.map_err(|lost| lost.told(self.target))?;
         Ok(all.into_iter().reduce(|a, b| [higher(a[0], b[0]), lower(a[1], b[1])]).expect("there are passes"))
     }
