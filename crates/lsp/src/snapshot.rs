@@ -21,7 +21,8 @@ pub(super) struct Analyses {
 struct Known {
     /// Of changes, the last one that was heard of.
     generation: u64,
-    of: BTreeMap<PathBuf, Arc<Analysis>>,
+    /// With the generation of the texts that each was compiled from.
+    of: BTreeMap<PathBuf, (u64, Arc<Analysis>)>,
 }
 
 impl Analyses {
@@ -29,20 +30,23 @@ impl Analyses {
     pub(super) fn forget(&self, file: Option<&Path>, generation: u64) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         known.generation = generation;
-        known.of.retain(|_, analysis| {
+        known.of.retain(|_, (_, analysis)| {
             file.is_some_and(|file| !analysis.lacks_files() && !analysis.files().iter().any(|of| of == file))
         });
     }
 
-    fn get(&self, path: &Path) -> Option<Arc<Analysis>> {
-        self.known.lock().unwrap_or_else(PoisonError::into_inner).of.get(path).cloned()
+    /// What is known of a text as it was at a generation: an answer about older texts takes nothing from newer ones.
+    fn get(&self, path: &Path, generation: u64) -> Option<Arc<Analysis>> {
+        let known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+        let (made, analysis) = known.of.get(path)?;
+        (*made <= generation).then(|| Arc::clone(analysis))
     }
 
     fn keep(&self, path: &Path, generation: u64, analysis: &Arc<Analysis>) {
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         // a text may have changed meanwhile
         if known.generation == generation {
-            known.of.insert(path.to_path_buf(), Arc::clone(analysis));
+            known.of.insert(path.to_path_buf(), (generation, Arc::clone(analysis)));
         }
     }
 }
@@ -93,7 +97,7 @@ impl Snapshot {
     }
 
     pub(super) fn analysis(&self, path: &Path) -> Arc<Analysis> {
-        if let Some(known) = self.analyses.get(path) {
+        if let Some(known) = self.analyses.get(path, self.documents.generation) {
             return known;
         }
         let analysis = Arc::new(analyse(&self.project(path)));
@@ -117,5 +121,23 @@ impl Snapshot {
         // of the library, into which no `use` leads
         let text = flank::ShippedFiles::text(flank::ShippedFiles::inside(&span.file)?)?;
         Some(Lines::of(text).range(span.start, span.end))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_newer_texts_mean_is_kept_from_older_ones() {
+        let path = Path::new("gear.chain");
+        let analysis = Arc::new(analyse(&Project::open(path, Arc::new(Documents::default()))));
+        let analyses = Analyses::default();
+        analyses.forget(Some(path), 2);
+        analyses.keep(path, 1, &analysis);
+        assert!(analyses.get(path, 1).is_none(), "the text has changed since");
+        analyses.keep(path, 2, &analysis);
+        assert!(analyses.get(path, 1).is_none());
+        assert!(analyses.get(path, 2).is_some() && analyses.get(path, 3).is_some());
     }
 }

@@ -1,10 +1,11 @@
 //! An editor without a screen: writes to the program, and reads what it says.
 #![allow(unreachable_pub)] // a test is no crate of others
 
-use std::collections::BTreeMap;
-use std::io::{BufRead, BufReader, Write};
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::{BufRead, BufReader, Read, Write};
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
+use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
 use gen_lsp_types::{PublishDiagnosticsParams, Request};
@@ -17,6 +18,8 @@ pub struct Client {
     pub child: Child,
     to: Option<ChildStdin>,
     from: Receiver<Value>,
+    /// What it says where editors keep a log: nothing, unless it has a fault.
+    complaints: Option<JoinHandle<String>>,
     number: i64,
     versions: BTreeMap<String, i64>,
     /// What was told last of each text.
@@ -33,7 +36,7 @@ impl Client {
             .current_dir(env!("CARGO_TARGET_TMPDIR"))
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(Stdio::inherit())
+            .stderr(Stdio::piped())
             .spawn()
             .expect("the program starts");
         let (sender, from) = channel();
@@ -46,8 +49,23 @@ impl Client {
                 }
             }
         });
+        let mut complaints = child.stderr.take().expect("a pipe");
+        let complaints = std::thread::spawn(move || {
+            let mut said = String::new();
+            let _ = complaints.read_to_string(&mut said);
+            said
+        });
         let to = child.stdin.take();
-        Client { child, to, from, number: 0, versions: BTreeMap::new(), told: BTreeMap::new(), others: Vec::new() }
+        Client {
+            child,
+            to,
+            from,
+            complaints: Some(complaints),
+            number: 0,
+            versions: BTreeMap::new(),
+            told: BTreeMap::new(),
+            others: Vec::new(),
+        }
     }
 
     pub fn start() -> Client {
@@ -98,6 +116,21 @@ impl Client {
                     None => Ok(message.get("result").cloned().unwrap_or(Value::Null)),
                 };
             }
+            self.keep(message);
+        }
+    }
+
+    /// Waits until each of the requests has an answer among `others`.
+    pub fn all_answered(&mut self, numbers: &[i64]) {
+        let end = Instant::now() + PATIENCE;
+        let mut waited: BTreeSet<i64> = numbers.iter().copied().collect();
+        let number = |message: &Value| message["id"].as_i64().filter(|_| message["method"].is_null());
+        for message in &self.others {
+            number(message).map(|number| waited.remove(&number));
+        }
+        while !waited.is_empty() {
+            let message = self.next(end).unwrap_or_else(|| panic!("no answer to requests {waited:?}"));
+            number(&message).map(|number| waited.remove(&number));
             self.keep(message);
         }
     }
@@ -190,7 +223,10 @@ impl Client {
     pub fn end(mut self) -> Option<i32> {
         assert_eq!(self.ask("shutdown", Value::Null), Ok(Value::Null));
         self.tell("exit", Value::Null);
-        self.child.wait().expect("it ends").code()
+        let code = self.child.wait().expect("it ends").code();
+        let said = self.complaints.take().map(|complaints| complaints.join().expect("it is read"));
+        assert_eq!(said.as_deref(), Some(""));
+        code
     }
 
     /// Goes away without a word; the exit code.

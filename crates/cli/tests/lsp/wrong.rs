@@ -215,6 +215,7 @@ fn mutated_conversations_end_nothing() {
         "codeLens",
         "didChange",
     ];
+    let mut asked = Vec::new();
     for number in 0..3000 {
         let method = methods[random.below(methods.len())];
         let place = |random: &mut Random| json!({ "line": random.below(9), "character": random.below(40) });
@@ -241,14 +242,18 @@ fn mutated_conversations_end_nothing() {
         if random.below(4) == 0 {
             let at = random.below(bytes.len());
             bytes[at] = b" {}[]:,\"x0\xff"[random.below(11)];
+        } else if method != "didChange" {
+            asked.push(10_000 + number);
         }
         client.raw(format!("Content-Length: {}\r\n\r\n", bytes.len()).as_bytes());
         client.raw(&bytes);
     }
-    let faults = |message: &Value| message["error"]["code"] == -32603;
     is_alive(&mut client);
-    assert!(!client.others.iter().any(faults), "{:?}", client.others.iter().find(|message| faults(message)));
-    assert!(client.others.len() > 1000, "{}", client.others.len());
+    // answers come from several threads: findings of another text may overtake them
+    assert!(asked.len() > 1000, "{}", asked.len());
+    client.all_answered(&asked);
+    let faults = |message: &&Value| message["error"]["code"] == -32603;
+    assert_eq!(client.others.iter().find(faults), None);
     if let Ok(status) = std::fs::read_to_string(format!("/proc/{}/status", client.child.id())) {
         let line = status.lines().find(|line| line.starts_with("VmHWM")).expect("memory");
         let kilobytes: u64 = line.split_whitespace().nth(1).expect("a number").parse().expect("a number");
