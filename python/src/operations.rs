@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use flank::{
-    ClampRange, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, ElementOrder, Failure, FieldArray, FitRequest,
-    KeptPlace, MeasureRequest, MeshRequest, MillRequest, Monitor, Onto, PlotRequest, PointGrid, ReportRequest,
-    SolidPart, SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ViewRequest, WantedEaseOff,
+    ClampRange, ContactRequest, ConvertRequest, DeriveRequest, DeviationRequest, ElementOrder, Failure, FieldArray,
+    FitRequest, KeptPlace, MeasureRequest, MeshRequest, MillRequest, Monitor, Onto, PlotRequest, PointGrid,
+    ReportRequest, SolidPart, SolidRequest, SolveRequest, SynthesisRequest, ToleranceRequest, ViewRequest,
+    WantedEaseOff,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
