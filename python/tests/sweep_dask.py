@@ -49,14 +49,16 @@ def disturbed(cases, folder, client):
     """The study after one worker was killed in the middle of a chunk."""
     study = planned(cases, folder)
     client.register_plugin(plugin())
-    thread = threading.Thread(target=lambda: study.run(on=client))
+    thread = threading.Thread(target=lambda: study.run(on=client), daemon=True)
     thread.start()
     while not list((folder / "chunks").iterdir()) or not list((folder / "open").iterdir()):
         if not thread.is_alive():
             raise SystemExit("the study ended before a worker could be killed")
         time.sleep(0.001)
     os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
-    thread.join()
+    thread.join(600)
+    if thread.is_alive():
+        raise SystemExit(f"the study does not end: {client.scheduler_info()}")
     return study
 
 

@@ -265,7 +265,7 @@ def test_dask_computes_the_same_bytes(job, study, tmp_path, client):
 def test_workers_that_are_killed_lose_nothing(study, tmp_path, client):
     whole = emptied(study, tmp_path / "whole", 6).run()
     killed = emptied(study, tmp_path / "killed", 6)
-    thread = threading.Thread(target=lambda: killed.run(on=client))
+    thread = threading.Thread(target=lambda: killed.run(on=client), daemon=True)
     thread.start()
     folder = Path(killed.folder)
     for done in (1, 4, 9):
@@ -293,6 +293,17 @@ def test_a_case_that_ends_its_workers_is_a_row(tmp_path):
             study = sweep_dask.disturbed(100, tmp_path / "a", client)
     assert study.columns()["number"].tolist() == list(range(100))
     assert [(one["number"], one["verdict"]) for one in study.failed()] == [(97, "crashed")]
+
+
+def test_workers_that_are_not_there_are_waited_for_and_told_of(study, tmp_path, monkeypatch):
+    distributed = pytest.importorskip("distributed", exc_type=ImportError)
+    monkeypatch.setattr(flank._dask, "_LOOKED", 0.05)
+    waits = emptied(study, tmp_path / "a", 48)
+    with distributed.LocalCluster(n_workers=0, threads_per_worker=1, dashboard_address=":0") as cluster:
+        with distributed.Client(cluster) as client, pytest.warns(UserWarning, match="no worker of Dask is there"):
+            threading.Timer(1.0, lambda: cluster.scale(1)).start()
+            waits.run(on=client)
+    assert waits.columns()["number"].tolist() == list(range(96))
 
 
 def test_a_job_of_a_text_keeps_its_text(tmp_path):

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import os
+import threading
+import time
+import warnings
 from collections.abc import Iterable
 from typing import Any
 
@@ -14,6 +18,11 @@ from flank._points import needed
 _BEGUN_AGAIN = 40
 # of what a file system refuses for a moment
 _RETRIES = 2
+# A worker that dies before its nanny has heard that it began is not replaced: this long, in seconds, a new one leaves alone what others may
+# have died of.
+_SETTLED = 2.0
+# so often, in seconds, it is looked whether there are workers at all
+_LOOKED = 60.0
 
 
 def run(client: Any, folder: str, chunks: Iterable[int], again: list[str]) -> None:
@@ -24,6 +33,8 @@ def run(client: Any, folder: str, chunks: Iterable[int], again: list[str]) -> No
     chunk_of = {_begin(client, folder, chunk, again): chunk for chunk in chunks}
     killed = dict.fromkeys(chunk_of.values(), 0)
     waiting = distributed.as_completed(list(chunk_of))
+    ended = threading.Event()
+    threading.Thread(target=_watch, args=(client, folder, ended), daemon=True).start()
     try:
         for future in waiting:
             chunk = chunk_of.pop(future)
@@ -37,7 +48,17 @@ def run(client: Any, folder: str, chunks: Iterable[int], again: list[str]) -> No
             chunk_of[begun] = chunk
             waiting.add(begun)
     finally:
+        ended.set()
         client.cancel(list(chunk_of))
+
+
+def _watch(client: Any, folder: str, ended: threading.Event) -> None:
+    """Says that nothing is computed where all workers are gone: Dask waits for others without a word."""
+    while not ended.wait(_LOOKED):
+        if client.status == "running" and not client.scheduler_info()["workers"]:
+            warnings.warn(
+                f"no worker of Dask is there: {folder} waits for one, and keeps the chunks that it has where it is interrupted", stacklevel=1
+            )
 
 
 def _begin(client: Any, folder: str, chunk: int, again: list[str]) -> Any:
@@ -50,6 +71,8 @@ _open: dict[str, _flank.OpenStudy] = {}
 
 def _chunk(folder: str, chunk: int, again: list[str]) -> None:
     """The task. Dask gives it one thread."""
+    if not _open and os.listdir(os.path.join(folder, "open")):
+        time.sleep(_SETTLED)
     study = _open.get(folder)
     if study is None or not study.is_current():
         _open.clear()
