@@ -121,27 +121,18 @@ impl Chart {
         across.iter().flat_map(row).collect()
     }
 
-    /// The largest of the last two coefficients in each direction of its series in Chebyshev's polynomials, mm: how far it may be off
-    /// between its points, since those that follow fall faster still.
-    pub fn tail(&self) -> f64 {
+    /// The largest of the last two coefficients of its series in Chebyshev's polynomials, across and along, mm: how far it may be off
+    /// between its points in that direction, since those that follow fall faster still.
+    pub fn tails(&self) -> [f64; 2] {
         let [rows, columns] = self.counts;
         let [by_row, by_column] = self.counts.map(last_coefficients);
-        let mut tail: f64 = 0.0;
-        for part in 0..3 {
-            for weights in &by_row {
-                for j in 0..columns {
-                    let sum: f64 = (0..rows).map(|i| weights[i] * self.points[i * columns + j][part]).sum();
-                    tail = tail.max(sum.abs());
-                }
-            }
-            for weights in &by_column {
-                for i in 0..rows {
-                    let sum: f64 = (0..columns).map(|j| weights[j] * self.points[i * columns + j][part]).sum();
-                    tail = tail.max(sum.abs());
-                }
-            }
-        }
-        tail
+        let size = |sum: [f64; 3]| sum.into_iter().fold(0.0, |size: f64, part| size.max(part.abs()));
+        let column = |j: usize| (0..rows).map(move |i| self.points[i * columns + j]);
+        let across = by_row
+            .iter()
+            .flat_map(|weights| (0..columns).map(move |j| size(weighted(weights.iter().copied().zip(column(j))))));
+        let along = by_column.iter().flat_map(|weights| (0..rows).map(move |i| size(self.in_row(i, weights))));
+        [across.fold(0.0, f64::max), along.fold(0.0, f64::max)]
     }
 
     fn summed(&self, [u, w]: [Vec<f64>; 2]) -> [f64; 3] {
@@ -214,7 +205,7 @@ mod tests {
         let (rows, columns) = (Chart::shares(17), Chart::shares(15));
         let points = rows.iter().flat_map(|u| columns.iter().map(move |w| surface(*u, *w))).collect();
         let chart = Chart::through(points, [17, 15]);
-        assert!(chart.tail() < 1e-14, "{}", chart.tail());
+        assert!(chart.tails().iter().all(|tail| *tail < 1e-14), "{:?}", chart.tails());
         for [u, w] in [[0.21, 0.77], [0.0, 0.5], [1.0, 0.123]] {
             let [at, by_u, by_w] = chart.frame([u, w]);
             let c = (u + 0.3 * w).cos();
@@ -236,11 +227,12 @@ mod tests {
             .flat_map(|u| Chart::shares(9).into_iter().map(move |w| surface(6.0 * u, w)))
             .collect();
         let chart = Chart::through(points, [5, 9]);
-        assert!(chart.tail() > 0.01);
+        let [across, along] = chart.tails();
+        assert!(across > 0.01 && along < 1e-4, "{across} {along}");
         let off = (0..50).map(|k| {
             let u = k as f64 / 49.0;
             (chart.at([u, 0.4])[0] - surface(6.0 * u, 0.4)[0]).abs()
         });
-        assert!(off.fold(0.0, f64::max) < 2.0 * chart.tail());
+        assert!(off.fold(0.0, f64::max) < 2.0 * across);
     }
 }

@@ -1,20 +1,17 @@
 //! The lines that neighbours in a tooth space share: ends of their tools' surfaces, or where one cuts off the other.
 
+use std::rc::Rc;
+
 use flank_chain_dsl::Solid;
-use flank_solver::{Blank, Intersection, Line, Meeting, SurfacePoint};
+use flank_solver::{Blank, SurfacePoint};
 
 use crate::project::failure::Failure;
 use crate::project::units;
+use crate::solve::body::course::Course;
 use crate::solve::body::piece::{EndLine, EndsOf, Piece, SAME_LINE, apart, positions};
 
 /// Shares along at which the ends of neighbours are held against each other.
 const ALONG: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
-/// How far along a space a common line is followed at once, as a share: a twentieth of a turn of a worm's thread that winds three times.
-const STRIDE: f64 = 1.0 / 64.0;
-/// What a radian, or a millimetre, of an unknown counts beside distances: it decides between points at one place.
-const TURNED: f64 = 1e-3;
-/// Pairs of known points from which a meeting is looked for.
-const KNOWN_PAIRS: usize = 4;
 /// Known points of neighbouring spaces nearer than this, as a share of the pitch, may belong to surfaces that end in one line.
 const NEAR: f64 = 0.1;
 
@@ -35,18 +32,18 @@ pub(crate) type Beside<'j, 'g> = [[Piece<'j, 'g>; 2]; 2];
 #[derive(Clone)]
 struct Joint<'j, 'g> {
     pieces: [Piece<'j, 'g>; 2],
-    shared: Shared,
+    shared: Shared<'j, 'g>,
 }
 
 /// What two neighbours have in common.
-#[derive(Clone, Copy, Debug)]
-enum Shared {
+#[derive(Clone)]
+enum Shared<'j, 'g> {
     /// The line on which an unknown of each has a value.
     Ends([(usize, f64); 2]),
     /// The line on which an unknown of one has a value, which lies within the other.
     Onto { ending: usize, line: (usize, f64) },
     /// Where they meet.
-    Meeting,
+    Meeting(Rc<Course<'j, 'g>>),
 }
 
 impl<'j, 'g> Borders<'j, 'g> {
@@ -73,8 +70,8 @@ impl<'j, 'g> Borders<'j, 'g> {
     /// The same with teeth that end where the flanks of neighbouring spaces meet.
     pub(crate) fn meeting_in_an_edge(self, beside: &[Beside<'j, 'g>], blank: &Blank) -> Option<Borders<'j, 'g>> {
         let edges = edges(beside, |pieces| {
-            let found = meeting([&pieces[0], &pieces[1]], blank, &ALONG);
-            found.map(|_| Joint { pieces: pieces.clone(), shared: Shared::Meeting })
+            let course = Course::new(pieces.each_ref(), blank, &ALONG)?;
+            Some(Joint { pieces: pieces.clone(), shared: Shared::Meeting(Rc::new(course)) })
         })?;
         Some(Borders { edges: Some(edges), ..self })
     }
@@ -130,24 +127,24 @@ impl<'j, 'g> Borders<'j, 'g> {
 impl Joint<'_, '_> {
     /// The unknown that has a value on the common line.
     fn unknown(&self, own: usize) -> Option<usize> {
-        match self.shared {
+        match &self.shared {
             Shared::Ends(lines) => Some(lines[own].0),
-            Shared::Onto { ending, line } if ending == own => Some(line.0),
-            Shared::Onto { .. } | Shared::Meeting => None,
+            Shared::Onto { ending, line } if *ending == own => Some(line.0),
+            Shared::Onto { .. } | Shared::Meeting(_) => None,
         }
     }
 
     fn values(&self, own: usize, unknown: usize, blank: &Blank, shares: &[f64]) -> Option<Vec<f64>> {
-        match self.shared {
+        match &self.shared {
             Shared::Ends(lines) => Some(vec![lines[own].1; shares.len()]),
-            Shared::Onto { ending, line } if ending == own => Some(vec![line.1; shares.len()]),
+            Shared::Onto { ending, line } if *ending == own => Some(vec![line.1; shares.len()]),
             Shared::Onto { ending, line } => {
-                let points = self.pieces[ending].on_line(line, blank, shares);
+                let points = self.pieces[*ending].on_line(*line, blank, shares);
                 let is_whole = points.solved() == shares.len();
                 is_whole.then(|| self.pieces[own].values_at(&positions(&points), unknown, blank)).flatten()
             }
-            Shared::Meeting => {
-                let points = meeting(self.pieces.each_ref(), blank, shares)?;
+            Shared::Meeting(course) => {
+                let points = course.at(blank, shares)?;
                 Some(points.iter().map(|of| of[own].unknowns[unknown]).collect())
             }
         }
@@ -156,7 +153,7 @@ impl Joint<'_, '_> {
 
 /// # Errors
 /// If neighbours share no line.
-fn shared(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Result<Shared, Failure> {
+fn shared<'j, 'g>(solid: &Solid, pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> Result<Shared<'j, 'g>, Failure> {
     // most neighbours share a line on which their rows end, and to find that there is no other end takes long
     let rows = pieces.map(|piece| piece.ends_of_rows(blank, &ALONG));
     if let Some((ends, _)) = nearest(&rows).filter(|(_, gap)| *gap <= SAME_LINE) {
@@ -170,8 +167,8 @@ fn shared(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Result<S
     if let Some(onto) = onto(pieces, &lines, blank) {
         return Ok(onto);
     }
-    if meeting(pieces, blank, &ALONG).is_some() {
-        return Ok(Shared::Meeting);
+    if let Some(course) = Course::new(pieces, blank, &ALONG) {
+        return Ok(Shared::Meeting(Rc::new(course)));
     }
     if let Some(ends) = ends_in_one_line(pieces, blank) {
         return Ok(ends);
@@ -194,7 +191,7 @@ fn nearest(lines: &[Vec<EndLine>; 2]) -> Option<([(usize, f64); 2], f64)> {
 }
 
 /// The line on which both are at an end of what their tool, or else a motion, runs through.
-fn ends_in_one_line(pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Option<Shared> {
+fn ends_in_one_line<'j, 'g>(pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> Option<Shared<'j, 'g>> {
     let of_tool = pieces.map(|piece| piece.end_lines(EndsOf::Tool, blank, &ALONG));
     let same = |lines: &[Vec<EndLine>; 2]| nearest(lines).filter(|(_, gap)| *gap <= SAME_LINE);
     let shared = same(&of_tool).or_else(|| {
@@ -206,7 +203,7 @@ fn ends_in_one_line(pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Option<Shared
 }
 
 /// An end of one that lies within the other, as that of a flank lies on what the corner of its tool sweeps.
-fn onto(pieces: [&Piece<'_, '_>; 2], lines: &[Vec<EndLine>; 2], blank: &Blank) -> Option<Shared> {
+fn onto<'j, 'g>(pieces: [&Piece<'j, 'g>; 2], lines: &[Vec<EndLine>; 2], blank: &Blank) -> Option<Shared<'j, 'g>> {
     [0, 1].into_iter().find_map(|ending| {
         let other = pieces[1 - ending];
         let unknown = other.across_tool(blank)?;
@@ -244,91 +241,4 @@ fn lost(solid: &Solid, pieces: [&Piece<'_, '_>; 2]) -> Failure {
 fn told(solid: &Solid, [first, second]: [&Piece<'_, '_>; 2]) -> String {
     let [first, second] = [first, second].map(|piece| &piece.surface.name);
     format!("`{first}` and `{second}` follow each other in the spaces of `{}` and", solid.name)
-}
-
-/// Points that two surfaces have in common, one at each share along, as points of both; `None` where one is not found.
-fn meeting(pieces: [&Piece<'_, '_>; 2], blank: &Blank, along: &[f64]) -> Option<Vec<[SurfacePoint; 2]>> {
-    let [first, second] = pieces;
-    let turned = || {
-        let found = meeting_across([second, first], blank, along)?;
-        Some(found.into_iter().map(|[a, b]| [b, a]).collect())
-    };
-    meeting_across(pieces, blank, along).or_else(turned)
-}
-
-/// The same, looked for along lines of the first.
-fn meeting_across(pieces: [&Piece<'_, '_>; 2], blank: &Blank, along: &[f64]) -> Option<Vec<[SurfacePoint; 2]>> {
-    let [first, second] = pieces;
-    let across = first.across_tool(blank)?;
-    let intersection = Intersection::new([&first.bound(), &second.bound()], first.across(across, blank)).ok()?;
-    let value = |point: &SurfacePoint| point.unknowns[across];
-    let at = |share: f64, starts: &[Vec<f64>]| {
-        let near: Vec<&SurfacePoint> = first.known.iter().collect();
-        let nearest = near.iter().min_by(|a, b| {
-            (first.along_of(blank, a) - share).abs().total_cmp(&(first.along_of(blank, b) - share).abs())
-        })?;
-        let line = Line { from: [value(nearest), share], direction: [1.0, 0.0] };
-        let known = if starts.is_empty() { known_pairs(pieces, blank, share) } else { starts.to_vec() };
-        let found = intersection.on_line(line, &known, &near);
-        // as the meetings before it go on, or the one that lies nearest to known points of both
-        let off = |meeting: &Meeting| match starts.first() {
-            Some(start) => meeting.unknowns().iter().zip(start).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max),
-            None => far(first, &meeting.first) + far(second, &meeting.second),
-        };
-        found.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))
-    };
-    let mut found: Vec<Option<[SurfacePoint; 2]>> = vec![None; along.len()];
-    let middle = along.len() / 2;
-    for order in [(middle..along.len()).collect::<Vec<usize>>(), (0..middle).rev().collect()] {
-        let mut before: Vec<(f64, Vec<f64>)> = found[middle]
-            .iter()
-            .map(|both| (along[middle], both.each_ref().map(|point| &point.unknowns[..]).concat()))
-            .collect();
-        for k in order {
-            for share in strides(before.last().map(|(share, _)| *share), along[k]) {
-                let meeting = at(share, &starts(&before, share))?;
-                before.push((share, meeting.unknowns()));
-                found[k] = Some([meeting.first, meeting.second]);
-            }
-        }
-    }
-    found.into_iter().collect()
-}
-
-/// Unknowns of known points of both surfaces that lie near each other, those of the first about as far along the space as is asked for.
-fn known_pairs([first, second]: [&Piece<'_, '_>; 2], blank: &Blank, share: f64) -> Vec<Vec<f64>> {
-    let off = |point: &SurfacePoint| (first.along_of(blank, point) - share).abs();
-    let least = first.known.iter().map(off).fold(f64::INFINITY, f64::min);
-    let beside = first.known.iter().filter(|point| off(point) <= least + STRIDE);
-    let pairs = beside.flat_map(|a| second.known.iter().map(move |b| (apart(a.position, b.position), a, b)));
-    let mut pairs: Vec<(f64, &SurfacePoint, &SurfacePoint)> = pairs.collect();
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    pairs.into_iter().take(KNOWN_PAIRS).map(|(_, a, b)| [&a.unknowns[..], &b.unknowns].concat()).collect()
-}
-
-/// How far a point lies from known ones of a surface, also by its unknowns: whole turns of a parameter leave it where it is.
-fn far(piece: &Piece<'_, '_>, point: &SurfacePoint) -> f64 {
-    let turned =
-        |known: &SurfacePoint| -> f64 { known.unknowns.iter().zip(&point.unknowns).map(|(a, b)| (a - b).abs()).sum() };
-    let far = piece.known.iter().map(|known| apart(known.position, point.position) + TURNED * turned(known));
-    far.fold(f64::INFINITY, f64::min)
-}
-
-/// The shares on the way from one that is known to another, in steps over which a thread turns little.
-fn strides(from: Option<f64>, to: f64) -> Vec<f64> {
-    let Some(from) = from.filter(|from| *from != to) else { return vec![to] };
-    let count = ((to - from).abs() / STRIDE).ceil() as usize;
-    (1..=count).map(|step| if step == count { to } else { from + (to - from) * step as f64 / count as f64 }).collect()
-}
-
-/// Where a meeting may lie: as the last two go on, and where the last one is.
-fn starts(before: &[(f64, Vec<f64>)], share: f64) -> Vec<Vec<f64>> {
-    match before {
-        [] => Vec::new(),
-        [.., (from, first), (to, last)] if from != to => {
-            let by = (share - to) / (to - from);
-            vec![first.iter().zip(last).map(|(a, b)| b + by * (b - a)).collect(), last.clone()]
-        }
-        [.., (_, last)] => vec![last.clone()],
-    }
 }

@@ -3,6 +3,7 @@
 pub(crate) mod borders;
 pub(crate) mod bricks;
 pub(crate) mod bricks_result;
+pub(crate) mod course;
 pub(crate) mod ends;
 pub(crate) mod gauges;
 pub(crate) mod mounted;

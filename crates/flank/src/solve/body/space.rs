@@ -13,7 +13,7 @@ use crate::solve::body::piece::{Piece, positions};
 
 /// How far charts may be off between their points, mm: below what any file or number shows.
 const EXACT: f64 = 1e-8;
-/// Rows and columns of charts that are tried.
+/// Rows and columns of charts that are tried, each until it suffices.
 const COUNTS: [usize; 4] = [9, 17, 33, 65];
 
 /// The surfaces of a space, made into charts of a body.
@@ -114,23 +114,38 @@ fn between(
     (spaces, borders, blank): (&[Vec<Piece<'_, '_>>], &[Borders<'_, '_>], &Blank),
     session: Session<'_>,
 ) -> Result<(Result<Body, BodyFault>, f64), Failure> {
-    let mut made = None;
-    for count in COUNTS {
-        let charts_of = |(pieces, borders): (&Vec<Piece<'_, '_>>, &Borders<'_, '_>)| {
+    let last = COUNTS.len() - 1;
+    // which of the counts the rows of each surface have, and the columns, which neighbours share
+    let (mut rows, mut columns) = (vec![0; spaces[0].len()], 0);
+    let mut charts: Vec<Vec<Chart>> = vec![Vec::new(); spaces.len()];
+    loop {
+        for ((pieces, borders), charts) in spaces.iter().zip(borders).zip(&mut charts) {
             session.check()?;
-            let charts = (0..pieces.len()).map(|k| chart((solid, k), &pieces[k], (borders, blank), count));
-            charts.collect::<Result<Vec<Chart>, Failure>>()
-        };
-        let charts: Vec<Vec<Chart>> = spaces.iter().zip(borders).map(charts_of).collect::<Result<_, Failure>>()?;
-        let off = charts.iter().flatten().map(Chart::tail).fold(0.0, f64::max);
-        made = Some((charts, off));
-        if off <= EXACT {
-            break;
+            let made = |k: usize| {
+                let counts = [COUNTS[rows[k]], COUNTS[columns]];
+                let known = charts.get(k).filter(|chart| chart.counts() == counts).cloned();
+                known.map_or_else(|| chart((solid, k), &pieces[k], (borders, blank), counts), Ok)
+            };
+            *charts = (0..pieces.len()).map(made).collect::<Result<_, Failure>>()?;
+        }
+        let tails: Vec<[f64; 2]> =
+            (0..rows.len()).map(|k| charts.iter().map(|charts| charts[k].tails()).fold([0.0; 2], larger)).collect();
+        let [_, along] = tails.iter().copied().fold([0.0; 2], larger);
+        let before = (rows.clone(), columns);
+        for (rows, [across, _]) in rows.iter_mut().zip(&tails) {
+            *rows = last.min(*rows + usize::from(*across > EXACT));
+        }
+        columns = last.min(columns + usize::from(along > EXACT));
+        if before == (rows.clone(), columns) {
+            let off = tails.into_iter().flatten().fold(0.0, f64::max);
+            let arrangement = blank::arrangement(solid);
+            return Ok((Body::new(blank.clone(), (arrangement, solid.teeth), charts, borders[0].has_edge()), off));
         }
     }
-    let (charts, off) = made.expect("some counts are tried");
-    let arrangement = blank::arrangement(solid);
-    Ok((Body::new(blank.clone(), (arrangement, solid.teeth), charts, borders[0].has_edge()), off))
+}
+
+fn larger(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|k| a[k].max(b[k]))
 }
 
 /// The chart of a surface between its borders.
@@ -138,25 +153,25 @@ fn chart(
     (solid, k): (&Solid, usize),
     piece: &Piece<'_, '_>,
     (borders, blank): (&Borders<'_, '_>, &Blank),
-    count: usize,
+    [rows, columns]: [usize; 2],
 ) -> Result<Chart, Failure> {
-    let (unknown, shares) = (borders.unknowns[k], Chart::shares(count));
+    let (unknown, shares, along) = (borders.unknowns[k], Chart::shares(rows), Chart::shares(columns));
     let end = |side: usize| {
-        let shared = borders.values(solid, (k, side), blank, &shares);
-        shared.unwrap_or_else(|| at_tip(solid, piece, (unknown, blank), &shares))
+        let shared = borders.values(solid, (k, side), blank, &along);
+        shared.unwrap_or_else(|| at_tip(solid, piece, (unknown, blank), &along))
     };
     let ends = [end(0)?, end(1)?];
     let value = |i: usize, j: usize| (1.0 - shares[i]) * ends[0][j] + shares[i] * ends[1][j];
     let targets: Vec<[f64; 2]> =
-        (0..count * count).map(|at| [value(at / count, at % count), shares[at % count]]).collect();
-    let middle = value(count / 2, count / 2);
-    let width = (ends[1][count / 2] - ends[0][count / 2]).abs();
+        (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(|(i, j)| [value(i, j), along[j]]).collect();
+    let middle = value(rows / 2, columns / 2);
+    let width = (ends[1][columns / 2] - ends[0][columns / 2]).abs();
     let far = |point: &SurfacePoint| {
         (point.unknowns[unknown] - middle).abs() / width + (piece.along_of(blank, point) - 0.5).abs()
     };
-    let points = piece.solved(piece.across(unknown, blank), (&targets, [count; 2]), far);
+    let points = piece.solved(piece.across(unknown, blank), (&targets, [rows, columns]), far);
     all_solved(solid, piece, &points)?;
-    Ok(Chart::through(positions(&points), [count; 2]))
+    Ok(Chart::through(positions(&points), [rows, columns]))
 }
 
 /// The values of an unknown where a surface reaches the tip.
