@@ -244,3 +244,44 @@ fn what_is_no_function_is_refused() {
     assert!(matches!(of(x * x - (a - 1.0), (0.0, 3.0)), Err(NoRoot::Unproven(_))));
     assert!(matches!(of((x - 1.0) * (a - 2.0), (0.0, 3.0)), Err(NoRoot::Unproven(_) | NoRoot::Several(_))));
 }
+
+/// What comes again and again over the range is not taken for a constant, and what moves along a part of the way alone is seen.
+#[test]
+fn what_moves_over_whole_turns_has_its_root_all_the_way() {
+    let graph = Graph::new();
+    let (q, a) = (graph.variable("q"), graph.variable("a"));
+    let cases = [
+        (a.sin(), PI),
+        (a.sin(), 2.0 * PI),
+        ((2.0 * a).sin(), 0.5 * PI),
+        (a.sin() * a.sin(), PI),
+        ((3.0 * a).sin(), PI),
+        (a * (1.0 - a) * (1.0 + a), 1.0),
+        ((-4.0 * (a * a)).exp(), PI),
+    ];
+    for (law, end) in cases {
+        let residual = q + 0.3 * (q * q * q) - law;
+        let found = root(residual, (q, (-2.0, 2.0)), (a, (-end, end))).unwrap_or_else(|why| panic!("{law}: {why}"));
+        let off = graph.substitute(&[residual], &[(q, found)])[0];
+        for k in 0..=500 {
+            let value = end * (f64::from(k) / 250.0 - 1.0);
+            let [off, found] = at(&[off, found], &[a], &[value])[..] else { panic!("two numbers") };
+            assert!(off.abs() < 1e-14, "{law} at {value}: {found} leaves {off}");
+        }
+    }
+}
+
+/// The boxes alone decide nothing here: one equation that rises all over the range has one root where its ends have other signs.
+#[test]
+fn what_rises_all_over_a_range_is_proven() {
+    let graph = Graph::new();
+    let (w, a) = (graph.variable("w"), graph.variable("a"));
+    let cubic = w * w * w + w - a;
+    let found = root(cubic, (w, (0.0, 4.0)), (a, (0.5, 1.5))).expect("it rises");
+    let off = graph.substitute(&[cubic], &[(w, found)])[0];
+    for k in 0..=20 {
+        let [off] = at(&[off], &[a], &[0.5 + f64::from(k) / 20.0])[..] else { panic!("one number") };
+        assert!(off.abs() < 1e-15, "{off}");
+    }
+    assert!(matches!(root(cubic, (w, (1.0, 4.0)), (a, (0.5, 1.5))), Err(NoRoot::None(_))));
+}

@@ -9,11 +9,8 @@ use crate::diagnostics::source::Span;
 use crate::model::RangedVariable;
 use crate::values::context::Context;
 
-/// Points in each direction at which the side of the steel is looked at, where there are few directions.
-const LOOKS: usize = 5;
-
-/// Points at most, unless two in each direction are more.
-const MOST_LOOKS: usize = 625;
+/// Points at which the side of the steel is looked at: a part that is a fiftieth of the surface has some of them.
+const LOOKS: usize = 200;
 
 /// `|r_u × r_v|` below this is rounding: the points make no surface.
 const NO_AREA: f64 = 1e-12;
@@ -91,12 +88,11 @@ fn look<'g>(context: &Context<'g>, parts: &[Expr<'g>; 6], unknowns: &[RangedVari
     let mut values: Vec<f64> = inputs.iter().map(|input| context.value_of(*input)).collect();
     let place = |unknown: &RangedVariable<'g>| inputs.iter().position(|input| *input == unknown.variable);
     let places: Vec<Option<usize>> = unknowns.iter().map(place).collect();
-    let looks = looks(unknowns.len());
+    let steps = steps(unknowns.len());
     let mut seen = Seen::default();
-    for mut k in 0..looks.pow(unknowns.len() as u32) {
-        for (unknown, place) in unknowns.iter().zip(&places) {
-            let share = ((k % looks) as f64 + 0.5) / looks as f64;
-            k /= looks;
+    for look in 0..LOOKS {
+        for ((unknown, place), step) in unknowns.iter().zip(&places).zip(&steps) {
+            let share = (0.5 + look as f64 * step).fract();
             if let Some(place) = place {
                 values[*place] = unknown.low + (unknown.high - unknown.low) * share;
             }
@@ -109,9 +105,11 @@ fn look<'g>(context: &Context<'g>, parts: &[Expr<'g>; 6], unknowns: &[RangedVari
     seen
 }
 
-/// Points in each of so many directions.
-fn looks(directions: usize) -> usize {
-    (2..=LOOKS).rev().find(|looks| looks.pow(directions as u32) <= MOST_LOOKS).unwrap_or(2)
+/// How far, as a share of each range, one point lies from the one before, so that they fill all directions evenly, and none stands at the
+/// same part of a turn again and again: powers of the root of x^(d + 1) = x + 1, the golden ratio's sequence in d directions.
+fn steps(directions: usize) -> Vec<f64> {
+    let root = (0..32).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (directions + 1) as f64));
+    (1..=directions).map(|k| root.powi(-(k as i32))).collect()
 }
 
 impl Seen {

@@ -13,6 +13,9 @@ const DEGREES: [usize; 14] = [0, 1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96];
 const MOST_COEFFICIENTS: usize = 300;
 /// Steps from a place that holds one solution, at most.
 const MOST_STEPS: usize = 20;
+/// Places in each input at which a start is looked at, at least, as long as they are not more than so many in all: what moves along a
+/// part of the way alone is seen, however low the degree is.
+const PLACES: [usize; 2] = [17, 300];
 /// A start is good where the second step from it goes a tenth as far as it may.
 const GOOD: f64 = 0.1 * REACH;
 
@@ -95,11 +98,13 @@ fn fitted(system: &System, moving: &[usize], degree: usize, newton: &mut Newton<
     Some((0..system.unknowns.len()).map(polynomial).collect())
 }
 
-/// Whether two steps settle, at twice as many places as there are coefficients, ends of the ranges among them.
+/// Whether two steps settle, at twice as many places as there are coefficients, ends of the ranges among them. The others lie at no even
+/// distances: what comes again and again over the range would be the same at all of them.
 fn is_good(system: &System, moving: &[usize], degree: usize, starts: &[Polynomial], newton: &mut Newton<'_>) -> bool {
     let ranges: Vec<Interval> = moving.iter().map(|k| system.others[*k]).collect();
-    let count = 2 * degree + 3;
-    let places = lattice(moving.len(), count, &|k| 2.0 * k as f64 / (count - 1) as f64 - 1.0, &ranges);
+    let suffices = |count: &usize| count.pow(moving.len() as u32) <= PLACES[1];
+    let least = (2..=PLACES[0]).rev().find(suffices).unwrap_or(2);
+    let places = lattice(moving.len(), least.max(2 * degree + 3), &uneven, &ranges);
     let graph = Graph::new();
     let inputs: Vec<Expr<'_>> = moving.iter().map(|_| graph.variable("")).collect();
     let starts: Vec<Expr<'_>> = starts.iter().map(|start| start.written(&graph, &inputs)).collect();
@@ -112,6 +117,16 @@ fn is_good(system: &System, moving: &[usize], degree: usize, starts: &[Polynomia
         let (_, last) = newton.from(start, &system.others_at(moving, place), 2);
         last.iter().zip(&system.unknowns).all(|(step, range)| step.abs() <= GOOD * (range.hi - range.lo))
     })
+}
+
+/// Both ends of -1 to 1, and then numbers that fill it evenly, none at a distance from another that is a simple part of the whole: multiples of
+/// the golden ratio.
+fn uneven(k: usize) -> f64 {
+    match k {
+        0 => -1.0,
+        1 => 1.0,
+        _ => 2.0 * (k as f64 * std::f64::consts::GOLDEN_RATIO).fract() - 1.0,
+    }
 }
 
 /// All combinations of `count` values in each of the ranges, the last range changing first.

@@ -158,10 +158,48 @@ impl<'s> Search<'s> {
     }
 
     fn solutions(&mut self, others: &[Interval], boxes: usize) -> Known {
-        match self.isolated(others, boxes) {
-            Some(found) => self.together(found, others),
-            None => Known::Nothing,
+        let found = self.isolated(others, boxes);
+        match found.map_or(Known::Nothing, |found| self.together(found, others)) {
+            Known::Nothing => self.between_ends(others).unwrap_or(Known::Nothing),
+            known => known,
         }
+    }
+
+    /// Of one equation that rises all over the range, or falls: its signs at the ends say whether the solution lies between them. `None` where
+    /// that is not plain.
+    fn between_ends(&mut self, others: &[Interval]) -> Option<Known> {
+        let [range] = self.system.unknowns[..] else { return None };
+        if !self.system.given_ranges.is_empty() {
+            return None;
+        }
+        let slope = self.slope(range, others);
+        let rises = (slope.continuous && !slope.contains(0.0)).then_some(slope.lo > 0.0)?;
+        let mut lies_above = |at: f64| {
+            let value = self.value(Interval::point(at), others);
+            let is_plain = value.continuous && !value.contains(0.0);
+            is_plain.then_some((value.lo < 0.0) == rises)
+        };
+        let (mut low, mut high) = (range.lo, range.hi);
+        if !lies_above(low)? || lies_above(high)? {
+            return Some(Known::None);
+        }
+        while high - low > NARROW * (range.hi - range.lo) {
+            let middle = 0.5 * (low + high);
+            match lies_above(middle) {
+                Some(true) => low = middle,
+                Some(false) => high = middle,
+                None => break,
+            }
+        }
+        Some(Known::One(vec![Interval::new(low, high)]))
+    }
+
+    fn slope(&mut self, place: Interval, others: &[Interval]) -> Interval {
+        run(&mut self.slopes, &[place], others, 1)[0]
+    }
+
+    fn value(&mut self, place: Interval, others: &[Interval]) -> Interval {
+        run(&mut self.values, &[place], others, 1)[0]
     }
 
     /// Boxes that hold one solution each, and together all; one solution may lie in several of them. `None` if it is not decided.
@@ -263,23 +301,14 @@ impl<'s> Search<'s> {
 
     /// Where the unknowns lie that those in a box give.
     fn given(&mut self, place: &[Interval], others: &[Interval]) -> Vec<Interval> {
-        let inputs: Vec<Interval> = place.iter().chain(others).copied().collect();
-        let mut out = vec![Interval::WHOLE; self.system.given_ranges.len()];
-        self.given.run(&inputs, &mut out);
-        out
+        run(&mut self.given, place, others, self.system.given_ranges.len())
     }
 
     /// Krawczyk's operator: m − C F(m) + (1 − C J) (X − m), C being the inverse of J's middle.
     fn held(&mut self, place: &[Interval], others: &[Interval]) -> Held {
         self.looked_at += 1;
         let size = place.len();
-        let run = |evaluator: &mut IntervalEvaluator<'_>, place: &[Interval], count: usize| {
-            let inputs: Vec<Interval> = place.iter().chain(others).copied().collect();
-            let mut out = vec![Interval::WHOLE; count];
-            evaluator.run(&inputs, &mut out);
-            out
-        };
-        let over = run(&mut self.values, place, size);
+        let over = run(&mut self.values, place, others, size);
         if over.iter().any(|value| value.continuous && !value.contains(0.0)) {
             return Held::None;
         }
@@ -287,9 +316,9 @@ impl<'s> Search<'s> {
         if given.any(|(given, range)| given.intersection(*range).is_empty()) {
             return Held::None;
         }
-        let slopes = run(&mut self.slopes, place, size * size);
+        let slopes = run(&mut self.slopes, place, others, size * size);
         let middle: Vec<Interval> = place.iter().map(|side| Interval::point(side.middle())).collect();
-        let values = run(&mut self.values, &middle, size);
+        let values = run(&mut self.values, &middle, others, size);
         let is_smooth = slopes.iter().chain(&over).all(|value| value.continuous);
         let middles: Vec<f64> = slopes.iter().map(|slope| slope.middle()).collect();
         let Some(inverse) = inverse(&middles, size).filter(|_| is_smooth) else {
@@ -315,6 +344,14 @@ impl<'s> Search<'s> {
         let inner: Vec<Interval> = image.iter().zip(place).map(|(image, side)| image.intersection(*side)).collect();
         if inner.iter().any(|side| side.is_empty()) { Held::None } else { Held::Within(inner, image) }
     }
+}
+
+/// So many values for unknowns and other inputs.
+fn run(evaluator: &mut IntervalEvaluator<'_>, place: &[Interval], others: &[Interval], count: usize) -> Vec<Interval> {
+    let inputs: Vec<Interval> = place.iter().chain(others).copied().collect();
+    let mut out = vec![Interval::WHOLE; count];
+    evaluator.run(&inputs, &mut out);
+    out
 }
 
 fn halves(side: Interval) -> [Interval; 2] {
