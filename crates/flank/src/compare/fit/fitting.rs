@@ -356,7 +356,7 @@ fn told(of: &SingularDirection, unknowns: &[Unknown<'_, '_>]) -> SettingsDirecti
     SettingsDirection { moves_um: 1e3 * of.size, is_used: of.is_used, changes: changes.collect() }
 }
 
-fn rms(of: &[f64]) -> f64 {
+pub(super) fn rms(of: &[f64]) -> f64 {
     (of.iter().map(|x| x * x).sum::<f64>() / of.len().max(1) as f64).sqrt()
 }
 
