@@ -17,7 +17,7 @@ use crate::values::dimension::{Dimension, shown};
 use crate::values::value::{Scope, Value};
 
 use super::Builder;
-use model::{Expectation, Expected};
+use model::{Expectation, Expected, ExpectedError};
 use quantities::Named;
 
 pub(crate) use machine::of_machine;
@@ -47,15 +47,15 @@ fn never_fails(context: &mut Context<'_>, span: Span, why: &str) {
     context.report(Diagnostic::new(Code::NeverFails, span, message).help(help));
 }
 
-/// The errors that a file is to have, with their places; reports codes that there are not.
-pub(crate) fn errors(context: &mut Context<'_>, job: &ast::Job) -> Vec<(String, Span)> {
+/// The errors that a job is to have; reports codes that there are not.
+pub(crate) fn errors(context: &mut Context<'_>, job: &ast::Job) -> Vec<ExpectedError> {
     let mut found = Vec::new();
     for statement in &job.statements {
         let JobStatement::Expect(ast::Expectation { what: ast::Expected::Error(code), .. }) = statement else {
             continue;
         };
         if Code::ALL.iter().any(|known| known.as_str() == code.node) {
-            found.push((code.node.clone(), code.span));
+            found.push(ExpectedError { job: job.name.node.clone(), code: code.node.clone(), place: code.span });
         } else {
             context.unknown(code, "error", Code::ALL.iter().map(|known| known.as_str()));
         }
