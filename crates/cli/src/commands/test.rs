@@ -71,7 +71,11 @@ fn tested(arguments: &Test, specs: &[PathBuf]) -> Result<TestResult, Failure> {
         print(&document::text(&result));
     } else {
         print(&with_flags(&result.to_string()));
-        result.specs.iter().filter(|spec| spec.is_wrong()).for_each(|spec| eprint(&findings_in_full(&spec.findings)));
+        result
+            .specs
+            .iter()
+            .filter(|spec| spec.has_findings())
+            .for_each(|spec| eprint(&findings_in_full(&spec.findings)));
     }
     if arguments.annotate {
         result.specs.iter().for_each(annotate);

@@ -160,6 +160,13 @@ pub enum Quantity<'g> {
     },
 }
 
+impl Quantity<'_> {
+    /// Whether it says how a surface lies to itself.
+    pub(super) fn is_of_itself(&self) -> bool {
+        matches!(self, Quantity::Deviation { surfaces: [one, other], .. } if one == other)
+    }
+}
+
 /// Points of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PointSet {
