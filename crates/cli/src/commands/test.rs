@@ -212,6 +212,12 @@ fn watch(arguments: &Test, result: TestResult) -> Result<Ending, Failure> {
             Ok(result) => result,
             Err(failure) => {
                 failure.tell(false);
+                // they are looked at again when they are saved again
+                for spec in touched {
+                    known.insert(spec.clone(), None);
+                    read.entry(spec.clone()).or_insert_with(|| vec![spec]);
+                }
+                known.iter_mut().for_each(|(file, at)| *at = saved(file));
                 continue;
             }
         };

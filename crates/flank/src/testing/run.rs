@@ -26,7 +26,7 @@ use crate::testing::snapshot;
 /// threads there are.
 ///
 /// # Errors
-/// If the work is cancelled.
+/// If a filter takes none of their jobs and machines, or the work is cancelled.
 pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResult, Failure> {
     let mut order: Vec<usize> = (0..requests.len()).collect();
     order.sort_by_cached_key(|number| Reverse(size(&requests[*number])));
@@ -37,7 +37,13 @@ pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResul
     });
     let mut tested = tested.collect::<Result<Vec<(usize, TestedSpec)>, Failure>>()?;
     tested.sort_by_key(|(number, _)| *number);
-    Ok(TestResult::of_specs(tested.into_iter().map(|(_, spec)| spec).collect()))
+    let result = TestResult::of_specs(tested.into_iter().map(|(_, spec)| spec).collect());
+    match requests.iter().find_map(|request| request.filter.as_ref()) {
+        Some(filter) if !result.specs.iter().any(TestedSpec::says_something) => Err(Failure::Input(format!(
+            "option `filter {filter}` takes no job and no machine: it is a part of `FILE:NAME`"
+        ))),
+        _ => Ok(result),
+    }
 }
 
 /// How much there is to do for a spec, as far as its text tells: bodies and contacts take longer than anything else.
