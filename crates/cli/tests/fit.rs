@@ -403,8 +403,13 @@ fn corrections_are_multiples_of_steps() {
         let share = number(&setting["new"]) / step;
         assert!((share - share.round()).abs() < 1e-9 && number(&setting["step"]) == step, "{setting}");
         assert!(setting["at_bound"].is_null(), "a step is no end of a range: {setting}");
+        assert!(setting["is_rounded"] == true && setting["uncertain_by"].is_null(), "{setting}");
     }
-    assert!(settings[2]["step"].is_null());
+    assert!(settings[2]["step"].is_null() && settings[2]["is_rounded"] == false);
+    let run = flank(&[&["fit"], &asked[..], &["--round", "radial_distance=20um,m.work_offset=0.01mm"]].concat());
+    let told_to_people = text(&run.stdout);
+    let is_said = told_to_people.matches("  rounded\n").count() == 2 && !told_to_people.contains("not determined");
+    assert!(is_said, "{told_to_people}");
     for (found, exact) in told["identification"]["settings"].as_array().expect("settings").iter().zip(CHANGED) {
         assert!((number(&found["new"]) - exact.2).abs() < 1e-9, "what was is not rounded: {found}");
     }
