@@ -273,6 +273,13 @@ fn of_surface(known: &Known<'_, '_, '_>, index: usize, (other, within): (&str, f
     let deviations: Vec<Option<f64>> = map.deviations.iter().map(|um| um.map(|um| 1e-3 * um)).collect();
     let name = pair[1].whole_name();
     let mut verdict = worst((sample, &map.points), &deviations, (&name, Dimension::LENGTH), [-within, within]);
+    // where a surface is not solved at all, that no point lies beside the other one follows from it
+    if let [why, others @ ..] = &map.refused[..]
+        && map.deviations.iter().all(Option::is_none)
+    {
+        let details = others.iter().map(|why| why.message.clone()).collect();
+        return Ok(Verdict { holds: false, found: why.message.clone(), details });
+    }
     verdict.details.extend(map.refused.iter().map(|why| why.message.clone()));
     Ok(verdict)
 }
