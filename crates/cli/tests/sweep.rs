@@ -583,7 +583,7 @@ fn the_whole_table_is_looked_at_before_anything_runs() {
             "m.radial_distance [mm]\n98\nx\n50000\n1,2\n",
             "cases.csv:4: `m.radial_distance` is 50000 mm, outside its range",
         ),
-        ("m.radial_distance [mm]\n98\nx\n50000\n1,2\n", "cases.csv:5: 2 values in 1 columns"),
+        ("m.radial_distance [mm]\n98\nx\n50000\n1,2\n", "cases.csv:5: 2 values in 1 column"),
         ("m.radial_distance [mm]\n", "the study has no case"),
     ];
     for (content, known) in refused {

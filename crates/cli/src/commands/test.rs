@@ -114,7 +114,7 @@ fn annotate(spec: &TestedSpec) {
     for expectation in spec.items.iter().flat_map(|item| &item.expectations).filter(|expectation| !expectation.holds) {
         let place = &expectation.place;
         let at = format!("{},line={},col={}", file(&place.file), place.line, place.column);
-        line(&at, &format!("{}: is {}", expectation.expected, expectation.found));
+        line(&at, &format!("{}: found: {}", expectation.expected, expectation.found));
     }
     if spec.is_wrong() {
         for finding in spec.findings.list() {

@@ -57,7 +57,7 @@ impl Display for TestedSpec {
             for expectation in item.expectations.iter().filter(|expectation| !expectation.holds) {
                 let at = format!("{}:{}", expectation.place.line, expectation.place.column);
                 writeln!(f, "  {}:{at}: {}", item.name, expectation.expected)?;
-                writeln!(f, "    is {}", expectation.found)?;
+                writeln!(f, "    found: {}", expectation.found)?;
                 expectation.details.iter().try_for_each(|line| writeln!(f, "    {line}"))?;
             }
         }
