@@ -213,6 +213,18 @@ def test_a_study_moves_and_goes_on(study, tmp_path):
         moved.run()
 
 
+def test_a_damaged_chunk_is_told_and_computed_anew(study, tmp_path):
+    whole = emptied(study, tmp_path / "whole", 16).run()
+    damaged = flank.Study(shutil.copytree(whole.folder, tmp_path / "damaged"))
+    chunk = next((Path(damaged.folder) / "chunks").iterdir())
+    chunk.write_text("".join(chunk.read_text().splitlines(keepends=True)[:9]))
+    assert damaged.progress()["done"] == 5 and len(damaged.progress()["damaged"]) == 1
+    with pytest.warns(UserWarning, match="not counted: 1 of 6 chunks"):
+        rows = damaged.columns()
+    assert len(rows["number"]) == 80 and set(rows["verdict"]) == {"done"}
+    assert chunks(damaged.run()) == chunks(whole)
+
+
 def test_another_study_is_refused(job, study):
     with pytest.raises(flank.InputError, match="holds another study"):
         flank.sweep(job, scatter=SCATTER, count=96, seed=8, collect=COLLECT, out=study.folder)

@@ -16,7 +16,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Name, Sources, Span};
 use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::job::expect;
-use crate::job::expect::model::Expectation;
+use crate::job::expect::model::{Expectation, ExpectedError};
 use crate::job::{self, Definitions};
 use crate::limits;
 use crate::load::files::{Disk, Files};
@@ -44,8 +44,8 @@ pub struct Compilation<'g> {
     pub machine: Option<Job<'g>>,
     /// What the machines of the file itself are to be like, by themselves; none if there is an error.
     pub machines: Vec<MachineExpectations<'g>>,
-    /// The errors that the file is to have, with the places where that is said.
-    pub expected_errors: Vec<(String, Span)>,
+    /// The errors that the file is to have.
+    pub expected_errors: Vec<ExpectedError>,
     /// All names of the texts, also of wrong ones.
     pub index: Index,
     main: Option<FileId>,

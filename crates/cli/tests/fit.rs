@@ -282,6 +282,32 @@ fn grids_that_are_not_those_of_the_flank_are_told() {
     assert!(stderr.contains("with the columns in the other order"), "{stderr}");
 }
 
+/// Deviations of a flank with two settings changed, from the tip to the root: other settings make them to a tenth of a micrometre, and it is told
+/// all the same, also where a point was not measured. In their own order nothing is told.
+#[test]
+fn a_reversed_grid_is_told_however_little_is_left() {
+    const GEAR: &str = "specs/bevel/gear_19x62.chain";
+    let out = folder("fit_reversed");
+    let set = ["--set", "m.radial_distance=98 mm", "--set", "c.blade_angle=20.1 deg"];
+    let measured = flank(&[&["measure", GEAR, "--surface", "concave", "--out", path(&out)][..], &set].concat());
+    assert_eq!(measured.status.code(), Some(0), "{}", text(&measured.stderr));
+    let grid = out.join("gear_19x62.grid.csv");
+    let vary = ["--vary", "radial_distance,blade_angle"];
+    let (told, stderr) = fit(0, &[&[GEAR, "concave", "--measured", path(&grid)], &vary[..]].concat());
+    assert!(!stderr.contains("in the other order"), "{stderr}");
+    let before = told["flanks"][0]["before_um"].as_array().expect("a grid").iter().map(number).collect::<Vec<f64>>();
+    let line = |at: usize| format!("{},{},{}\n", 5 - at / 9, at % 9 + 1, before[at]);
+    for (name, left_out) in [("all.csv", None), ("less.csv", Some(20))] {
+        let lines: String = (0..45).filter(|at| Some(*at) != left_out).map(line).collect();
+        let file = written(&out, name, &format!("row,column,deviation_um\n{lines}"));
+        let code = if left_out.is_some() { 3 } else { 0 };
+        let (told, stderr) = fit(code, &[&[GEAR, "concave", "--measured", &file], &vary[..]].concat());
+        assert!(number(&told["identification"]["left_um"]) < 1.0);
+        assert!(stderr.contains("note: with the rows in the other order 0.0"), "{stderr}");
+        assert_eq!(told["remarks"][0]["kind"], "other_order", "{}", told["remarks"]);
+    }
+}
+
 /// A point that stands in the file twice is refused with its line; a row that is missing is counted, and the others are fitted; both flanks
 /// may stand in one file.
 #[test]
@@ -377,8 +403,13 @@ fn corrections_are_multiples_of_steps() {
         let share = number(&setting["new"]) / step;
         assert!((share - share.round()).abs() < 1e-9 && number(&setting["step"]) == step, "{setting}");
         assert!(setting["at_bound"].is_null(), "a step is no end of a range: {setting}");
+        assert!(setting["is_rounded"] == true && setting["uncertain_by"].is_null(), "{setting}");
     }
-    assert!(settings[2]["step"].is_null());
+    assert!(settings[2]["step"].is_null() && settings[2]["is_rounded"] == false);
+    let run = flank(&[&["fit"], &asked[..], &["--round", "radial_distance=20um,m.work_offset=0.01mm"]].concat());
+    let told_to_people = text(&run.stdout);
+    let is_said = told_to_people.matches("  rounded\n").count() == 2 && !told_to_people.contains("not determined");
+    assert!(is_said, "{told_to_people}");
     for (found, exact) in told["identification"]["settings"].as_array().expect("settings").iter().zip(CHANGED) {
         assert!((number(&found["new"]) - exact.2).abs() < 1e-9, "what was is not rounded: {found}");
     }

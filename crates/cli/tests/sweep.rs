@@ -418,6 +418,78 @@ fn chunks_are_shared_out_in_parts() {
     }
 }
 
+/// A chunk that lost rows, has the row of another case, a word that is no verdict or a number that is none does not count, and is told; a run
+/// computes it anew. One that is not there at all is another matter.
+#[test]
+fn a_damaged_chunk_does_not_count_and_is_computed_anew() {
+    let folder = folder();
+    let out = study(&folder, "a");
+    let run = flank(&[
+        "sweep",
+        PINION,
+        "--vary",
+        "m.radial_distance=97.9mm..98.1mm by 70",
+        "--collect",
+        "at:concave[7,15]",
+        "--out",
+        &out,
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let whole = gathered(&out);
+    let chunks = Path::new(&out).join("chunks");
+    let chunk = std::fs::read_dir(&chunks).expect("chunks").next().expect("a chunk").expect("a chunk").path();
+    let kept = std::fs::read_to_string(&chunk).expect("rows");
+    let damages: [(&str, String); 7] = [
+        ("cut off between rows", kept.lines().take(20).map(|line| format!("{line}\n")).collect()),
+        ("cut off in a row", kept[..kept.len() - 9].to_string()),
+        ("emptied", String::new()),
+        ("no verdict", kept.replacen(",done,", ",dune,", 1)),
+        ("no number", kept.replacen(",97.9,", ",97x9,", 1)),
+        ("another case", kept.replacen("\n", "\n0", 1)),
+        ("a row twice", kept.clone() + kept.lines().last().expect("a row") + "\n"),
+    ];
+    let asked = |arguments: &[&str]| {
+        let run = flank(&[&["sweep"], arguments].concat());
+        (run.status.code(), text(&run.stdout), text(&run.stderr))
+    };
+    for (what, damaged) in damages {
+        assert_ne!(damaged, kept, "{what}");
+        std::fs::write(&chunk, damaged).expect("a file");
+        let (code, json, told) = asked(&["status", &out, "--json"]);
+        let document: serde_json::Value = serde_json::from_str(&json).expect("a document");
+        assert_eq!((code, &document["done"]), (Some(3), &0.into()), "{what}: {told}");
+        assert_eq!(document["damaged"].as_array().map(Vec::len), Some(1), "{what}: {document}");
+        assert_eq!(document["verdicts"], serde_json::json!({}), "{what}");
+        assert!(
+            document["not_done"][0]["message"].as_str().is_some_and(|of| of.starts_with("not counted: 1 of 1 chunk")),
+            "{document}"
+        );
+        let (code, rows, told) = asked(&["gather", &out]);
+        assert_eq!((code, rows.lines().count()), (Some(3), 1), "{what}");
+        assert!(told.contains("not counted: 1 of 1 chunk of") && !told.contains("not computed"), "{what}: {told}");
+        assert_eq!(asked(&["run", &out]).0, Some(0), "{what}");
+        assert_eq!(gathered(&out), whole, "{what}");
+    }
+    std::fs::remove_file(&chunk).expect("it was there");
+    assert_eq!(asked(&["status", &out]).0, Some(0));
+    let (code, _, told) = asked(&["gather", &out]);
+    assert!(code == Some(3) && told.contains("1 of 1 chunk") && told.contains("not computed"), "{told}");
+}
+
+/// Spreadsheets put a byte order mark before a table: the cases are the same.
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_table() {
+    let folder = folder();
+    let rows = ["", "\u{feff}"].map(|mark| {
+        let table = written(folder.path(), "cases.csv", &format!("{mark}m.radial_distance [mm]\n97.9\n98.1\n"));
+        let out = study(&folder, if mark.is_empty() { "plain" } else { "marked" });
+        let run = flank(&["sweep", PINION, "--cases", &table, "--collect", "at:concave[7,15]", "--out", &out]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        gathered(&out)
+    });
+    assert_eq!(rows[0], rows[1]);
+}
+
 /// Killed twenty times at times that do not depend on the work, the study has each case once and the bytes of an undisturbed one.
 #[test]
 fn a_study_survives_being_killed() {
@@ -511,7 +583,7 @@ fn the_whole_table_is_looked_at_before_anything_runs() {
             "m.radial_distance [mm]\n98\nx\n50000\n1,2\n",
             "cases.csv:4: `m.radial_distance` is 50000 mm, outside its range",
         ),
-        ("m.radial_distance [mm]\n98\nx\n50000\n1,2\n", "cases.csv:5: 2 values in 1 columns"),
+        ("m.radial_distance [mm]\n98\nx\n50000\n1,2\n", "cases.csv:5: 2 values in 1 column"),
         ("m.radial_distance [mm]\n", "the study has no case"),
     ];
     for (content, known) in refused {

@@ -37,7 +37,7 @@ fn what_holds_and_what_does_not() {
     assert_eq!(run.status.code(), Some(3));
     let told = text(&run.stdout);
     assert!(told.contains("gear.chain: 2 of 4 expectations failed"), "{told}");
-    assert!(told.contains("is off by up to") && told.contains("most at rho ="), "{told}");
+    assert!(told.contains("found: off by up to") && told.contains("most at rho ="), "{told}");
     assert!(told.contains("::error file=gear.chain,line="), "{told}");
     let xml = std::fs::read_to_string(folder.join("out.xml")).expect("it is written");
     assert!(xml.contains("tests=\"4\" failures=\"2\"") && xml.matches("<failure").count() == 2, "{xml}");
@@ -47,6 +47,66 @@ fn what_holds_and_what_does_not() {
     assert_eq!((&document["schema"], &document["failed"]), (&"flank.test/1".into(), &2.into()));
     let run = tested(&folder, "", &["gear.chain", "--filter", "helical"]);
     assert_eq!((run.status.code(), text(&run.stdout).contains("1 expectation")), (Some(0), true));
+    // where nothing is taken, nothing holds either
+    let run = tested(&folder, "", &["gear.chain", "--filter", "typo"]);
+    assert_eq!((run.status.code(), text(&run.stdout)), (Some(1), String::new()));
+    assert!(text(&run.stderr).contains("--filter typo takes no job and no machine"), "{}", text(&run.stderr));
+}
+
+/// The gear of the tutorial with these expectations in place of its own.
+fn expecting(expectations: &str) -> String {
+    let own = gear();
+    let lines = own.lines().filter(|line| !line.trim_start().starts_with("expect "));
+    let text: String = lines.map(|line| format!("{line}\n")).collect();
+    text.replace("    let base_radius", &format!("{expectations}    let base_radius"))
+}
+
+/// Both sides are one expression, or both surfaces one: `flank test` warns of it as `flank check` does, and not of what is derived.
+#[test]
+fn expectations_that_never_fail_are_warned_of() {
+    let folder = folder("test_never");
+    for (expected, why) in [
+        ("flank_plus: x near x within 1 um", Some("both sides are the same")),
+        ("flank_plus: x * 1 near x within 1 um", Some("both sides are the same")),
+        ("flank_plus: rho near sqrt(x^2 + y^2) within 1 um", Some("both sides are the same")),
+        ("r.module near r.module within 1 um", Some("both sides are the same")),
+        ("turn(flank_plus, flank_plus) near 0 deg within 1 arcsec", Some("it compares a surface with itself")),
+        ("rms(flank_plus, flank_plus) + 1 um in 0 um .. 2 um", Some("it compares a surface with itself")),
+        ("flank_plus: rho near sqrt(x^2 + y^2 + z^2) within 1 mm", None),
+        ("turn(flank_plus, flank_plus) near 1 deg within 1 arcsec", None),
+    ] {
+        written(&folder, "gear.chain", &expecting(&format!("    expect {expected}\n")));
+        let run = tested(&folder, "", &["gear.chain"]);
+        let (out, told) = (text(&run.stdout), text(&run.stderr));
+        match why {
+            Some(why) => {
+                assert_eq!(run.status.code(), Some(0), "{expected}: {out}{told}");
+                assert!(out.contains("gear.chain: 1 expectation holds, 1 warning"), "{expected}: {out}");
+                assert!(told.contains("W0006") && told.contains(why), "{expected}: {told}");
+            }
+            None => assert!(!out.contains("warning") && !told.contains("W0006"), "{expected}: {out}{told}"),
+        }
+    }
+}
+
+/// What was found is told as it is: a value, a formula that has none, the reason why there is none, the job that expects an error.
+#[test]
+fn what_was_found_reads_well() {
+    let folder = folder("test_found");
+    let found = |expected: &str| {
+        written(&folder, "gear.chain", &expecting(&format!("    expect {expected}\n")));
+        let run = tested(&folder, "", &["gear.chain", "--junit", "out.xml"]);
+        assert_eq!(run.status.code(), Some(3), "{expected}: {}", text(&run.stderr));
+        text(&run.stdout)
+    };
+    let told = found("flank_plus: rho in 1 mm .. 2 mm");
+    assert!(told.contains("\n    found: reaches "), "{told}");
+    let told = found("flank_plus: sqrt(-1 - z^2 / 1 mm^2) near 0 within 1");
+    assert!(told.contains("\n    found: no number: the formula has no value there\n    at 35 of 35"), "{told}");
+    let told = found("error E0307");
+    assert!(told.contains("  first_gear:") && told.contains("\n    found: no error"), "{told}");
+    let xml = std::fs::read_to_string(folder.join("out.xml")).expect("it is written");
+    assert!(xml.contains("classname=\"first_gear\" name=\"error E0307\""), "{xml}");
 }
 
 #[test]
@@ -64,6 +124,18 @@ fn snapshots_are_accepted_and_differ_in_words() {
     assert!(told.contains("first_gear.flank_plus moved along its normal by at most"), "{told}");
     assert!(told.contains("pressure angle") && told.contains("explained best by r.pressure_angle"), "{told}");
     assert!(folder.join("build/gear.moved.svg").exists(), "{}", text(&run.stderr));
+
+    // a sample of its own is no other branch: it says what is asked for otherwise
+    for (sample, says) in [
+        (gear().replace("by 5 }", "by 6 }"), "its sample is another one: 42 points of it are looked at instead of 35"),
+        (gear().replace("-10 mm .. 10 mm", "-9 mm .. 10 mm"), "its sample has other places"),
+    ] {
+        assert_ne!(sample, gear());
+        written(&folder, "gear.chain", &sample);
+        let run = tested(&folder, "", &[]);
+        let told = text(&run.stdout);
+        assert!(run.status.code() == Some(3) && told.contains(says) && !told.contains("evaluations"), "{told}");
+    }
 
     // nothing is accepted where a server runs it, and nobody is asked where nobody sits
     for arguments in [["--accept"], ["--review"]] {
@@ -133,4 +205,50 @@ fn a_new_job_brings_its_expectations() {
         let run = tested(&folder, "", &[place]);
         assert_eq!((run.status.code(), text(&run.stdout).contains("hold")), (Some(0), true), "{}", text(&run.stdout));
     }
+}
+
+/// A cam and two ways to sample it: one range holds three branches, so nothing can be said of the other one, which is whole.
+const CAM: &str = r#"machine lathe {
+    axis X : linear
+    axis C : rotary
+    frame bed
+    frame slide in bed = translate(X, 0 mm, 0 mm)
+    frame work in bed = rotate_z(C)
+    couple X = 30 mm + 2 mm * sin(3 * C)
+}
+
+tool ball {
+    surface face(a: angle in -180 deg .. 180 deg, b: angle in -89 deg .. 89 deg) {
+        at = [4 mm * cos(b) * cos(a), 4 mm * cos(b) * sin(a), 4 mm * sin(b)]
+        body inside
+    }
+}
+
+job cam {
+    machine m = lathe
+    tool    t = ball
+    mount t on m.slide
+    motion turn : angle in -60 deg .. 60 deg
+    drive m.C = turn
+    surface both, inner in m.work = envelope(t.face, t.face, over: turn)
+    sample both { z: -3 mm .. 3 mm by 3, turn: -50 deg .. 50 deg by 5 }
+    sample inner {
+        z: -3 mm .. 3 mm by 3, turn: -50 deg .. 50 deg by 5
+        keep side = cos(a): -1 .. 0
+    }
+    expect inner solved
+    expect both near inner within 1 um
+}
+"#;
+
+#[test]
+fn what_is_ambiguous_is_the_first_reason() {
+    let folder = folder("test_ambiguous");
+    written(&folder, "cam.chain", CAM);
+    let run = tested(&folder, "", &["cam.chain"]);
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(3), "{told}");
+    assert!(told.contains("1 of 2 expectations failed"), "{told}");
+    assert!(told.contains("    found: ambiguous: the ranges of both hold 3 branches"), "{told}");
+    assert!(!told.contains("inner is solved"), "{told}");
 }

@@ -67,3 +67,28 @@ fn what_does_not_go_together_is_refused() {
         assert!(text(&run.stderr).contains(says), "{more:?}: {}", text(&run.stderr));
     }
 }
+
+/// A spur gear is even along its teeth: what rounding leaves of slope and bias there has no causes, and random cases say nothing of it.
+#[test]
+fn rounding_is_no_result() {
+    let asked = ["tolerance", "specs/hobbing/spur_gear.chain", "flank_plus", "--sweep", "100"];
+    let run = flank(&asked);
+    let (out, told) = (text(&run.stdout), text(&run.stderr));
+    assert!(!told.contains("note:"), "{told}");
+    let (_, shares) = out.split_once("shares of the variance").expect("shares");
+    for name in ["slope_lengthwise", "crowning_lengthwise", "bias"] {
+        let line = shares.lines().find(|line| line.trim_start().starts_with(name)).expect("a line");
+        assert_eq!(line.split_whitespace().collect::<Vec<_>>(), [name, "-"]);
+    }
+    let run = flank(&[&asked[..], &["--json"]].concat());
+    let document: serde_json::Value = serde_json::from_slice(&run.stdout).expect("a document");
+    for of in document["results"].as_array().expect("results") {
+        let sum: f64 = of["shares"].as_array().expect("shares").iter().filter_map(serde_json::Value::as_f64).sum();
+        let is_moved = of["standard_deviation"].as_f64() > Some(0.0);
+        assert!((sum - if is_moved { 1.0 } else { 0.0 }).abs() < 1e-9, "{of}");
+        assert_eq!(
+            is_moved,
+            !["slope_lengthwise", "crowning_lengthwise", "bias"].contains(&of["name"].as_str().unwrap_or(""))
+        );
+    }
+}

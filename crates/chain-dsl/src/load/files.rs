@@ -95,6 +95,15 @@ impl Files for Buffers {
     }
 }
 
+/// The text of a file that is no spec, such as a table. Spreadsheets put a byte order mark before it, which is none of its text.
+///
+/// # Errors
+/// As [`Files::read`].
+pub(crate) fn read_other(files: &dyn Files, real: &Path, most: usize) -> Result<String> {
+    let text = files.read(real, most)?;
+    Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
+}
+
 fn limited(text: String, most: usize) -> Result<String> {
     if text.len() > most { Err(ErrorKind::FileTooLarge.into()) } else { Ok(text) }
 }

@@ -12,7 +12,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Name, Sources, Span, Spanned};
 use crate::limits::{self, Limit};
-use crate::load::files::Files;
+use crate::load::files::{Files, read_other};
 use crate::syntax::ast::{File, Item};
 
 /// All files of a compilation, each once, used ones before those that use them.
@@ -77,7 +77,7 @@ pub(crate) fn load(from: Arc<dyn Files>, path: &Path, beside: Option<&Path>) -> 
 /// # Errors
 /// Says why it cannot be read; the place is an empty text of the file's name.
 pub fn read_file(from: &dyn Files, sources: &mut Sources, path: &Path) -> Result<FileId, Diagnostic> {
-    read_as(from, sources, path, limits::FILE_BYTES.most, unreadable)
+    read_as((from, sources), path, |real| from.read(real, limits::FILE_BYTES.most), unreadable)
 }
 
 /// The same for a text that is no spec, of at most so many bytes.
@@ -90,23 +90,27 @@ pub fn read_other_file(
     path: &Path,
     most: usize,
 ) -> Result<FileId, Diagnostic> {
-    read_as(from, sources, path, most, |error, path, place| match error.kind() {
-        ErrorKind::FileTooLarge => {
-            let message = format!("cannot read `{}`: it has more than {} MiB", path.display(), most >> 20);
-            Diagnostic::new(Code::UnreadableFile, place, message)
-        }
-        _ => unreadable(error, path, place),
-    })
+    read_as(
+        (from, sources),
+        path,
+        |real| read_other(from, real, most),
+        |error, path, place| match error.kind() {
+            ErrorKind::FileTooLarge => {
+                let message = format!("cannot read `{}`: it has more than {} MiB", path.display(), most >> 20);
+                Diagnostic::new(Code::UnreadableFile, place, message)
+            }
+            _ => unreadable(error, path, place),
+        },
+    )
 }
 
 fn read_as(
-    from: &dyn Files,
-    sources: &mut Sources,
+    (from, sources): (&dyn Files, &mut Sources),
     path: &Path,
-    most: usize,
+    read: impl Fn(&Path) -> std::io::Result<String>,
     report: impl Fn(&std::io::Error, &Path, Span) -> Diagnostic,
 ) -> Result<FileId, Diagnostic> {
-    match from.real_path(path).and_then(|real| Ok((from.read(&real, most)?, real))) {
+    match from.real_path(path).and_then(|real| Ok((read(&real)?, real))) {
         Ok((text, real)) => Ok(sources.add_file(path, &real, text)),
         Err(error) => Err(report(&error, path, Span { file: sources.add(path, ""), start: 0, end: 0 })),
     }

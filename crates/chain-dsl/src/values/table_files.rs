@@ -12,7 +12,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{FileId, Sources, Span};
 use crate::limits::{self, Limit};
-use crate::load::files::Files;
+use crate::load::files::{Files, read_other};
 use crate::load::tidy;
 use crate::values::dimension::{self, Dimension};
 use crate::values::grids::Grids;
@@ -105,7 +105,7 @@ impl Tables {
             return Ok(text);
         }
         let room = limits::TABLE_BYTES.most.saturating_sub(self.bytes);
-        let text = self.from.read(real, room).map_err(|error| match error.kind() {
+        let text = read_other(&*self.from, real, room).map_err(|error| match error.kind() {
             ErrorKind::FileTooLarge => Reason::Exceeded(limits::TABLE_BYTES),
             _ => Reason::Wrong(Code::UnreadableFile, crate::load::reason(&error)),
         })?;

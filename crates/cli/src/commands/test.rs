@@ -71,7 +71,11 @@ fn tested(arguments: &Test, specs: &[PathBuf]) -> Result<TestResult, Failure> {
         print(&document::text(&result));
     } else {
         print(&with_flags(&result.to_string()));
-        result.specs.iter().filter(|spec| spec.is_wrong()).for_each(|spec| eprint(&findings_in_full(&spec.findings)));
+        result
+            .specs
+            .iter()
+            .filter(|spec| spec.has_findings())
+            .for_each(|spec| eprint(&findings_in_full(&spec.findings)));
     }
     if arguments.annotate {
         result.specs.iter().for_each(annotate);
@@ -110,7 +114,7 @@ fn annotate(spec: &TestedSpec) {
     for expectation in spec.items.iter().flat_map(|item| &item.expectations).filter(|expectation| !expectation.holds) {
         let place = &expectation.place;
         let at = format!("{},line={},col={}", file(&place.file), place.line, place.column);
-        line(&at, &format!("{}: is {}", expectation.expected, expectation.found));
+        line(&at, &format!("{}: found: {}", expectation.expected, expectation.found));
     }
     if spec.is_wrong() {
         for finding in spec.findings.list() {
@@ -208,6 +212,12 @@ fn watch(arguments: &Test, result: TestResult) -> Result<Ending, Failure> {
             Ok(result) => result,
             Err(failure) => {
                 failure.tell(false);
+                // they are looked at again when they are saved again
+                for spec in touched {
+                    known.insert(spec.clone(), None);
+                    read.entry(spec.clone()).or_insert_with(|| vec![spec]);
+                }
+                known.iter_mut().for_each(|(file, at)| *at = saved(file));
                 continue;
             }
         };

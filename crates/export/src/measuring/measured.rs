@@ -149,7 +149,7 @@ pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, Measured
 
 /// What stands between the titles.
 fn separator(text: &str) -> u8 {
-    let lines = text.trim_start_matches('\u{feff}').split(['\n', '\r']);
+    let lines = text.split(['\n', '\r']);
     let titles = lines.map(str::trim_start).find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
     let is_split = |sign: char| titles.split(sign).any(|title| title.trim().trim_matches('"') == "row");
     // without that column it is the one that stands there
@@ -211,7 +211,7 @@ mod tests {
             "row;column;deviation_um\n1;2;-4.5\n2;1;1e1\n",
             "row;column;deviation_um\n1;2;-4,5\n2;1;1,0e1\n",
             "# a, b\r\n\"row\"\tcolumn\tdeviation_um\r\n1\t2\t\"-4,5\"\r\n2\t1\t10\r\n",
-            "\u{feff}column;row;deviation_um;x, y\r2;1;-4,5;\r1;2;10;\r",
+            "column;row;deviation_um;x, y\r2;1;-4,5;\r1;2;10;\r",
         ] {
             assert_eq!(read_measured(text, "left"), Ok(plain.clone()), "{text:?}");
         }

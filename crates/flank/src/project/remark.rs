@@ -123,6 +123,8 @@ pub enum RemarkKind {
     MovesNothing,
     /// A measured point does not go with the others.
     Outlier,
+    /// Deviations fit better in the other order of rows or columns.
+    OtherOrder,
     /// What settings take away of a deviation is not more than it scatters.
     NotShown,
     /// Over tolerances a result is not proportional to them.

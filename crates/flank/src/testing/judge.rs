@@ -15,6 +15,8 @@ use crate::solve::{self, SolveOptions, geometry, travel};
 use crate::testing::points::{Tested, place};
 use crate::testing::quantities::{FOLLOWED, Known};
 
+/// What was found where a formula has no value.
+const NO_NUMBER: &str = "no number: the formula has no value there";
 /// Places that are named one by one.
 const NAMED: usize = 3;
 
@@ -143,13 +145,15 @@ fn worst(
     } else {
         "reaches"
     };
-    let shown = if is_symmetric { value.abs() } else { value };
+    let found = match if is_symmetric { value.abs() } else { value } {
+        shown if shown.is_nan() => NO_NUMBER.to_string(),
+        shown => format!("{what} {}", precise(dimension, shown)),
+    };
     let mut details: Vec<String> = unknown.iter().take(NAMED).map(|k| told(points, sample, *k)).collect();
     if wrong > 0 {
         let all = units::counted(values.len(), "point");
         details.insert(0, format!("at {wrong} of {all}, most at {}", place(sample, at)));
     }
-    let found = format!("{what} {}", precise(dimension, shown));
     Verdict { holds: wrong == 0 && unknown.is_empty(), found, details }
 }
 
@@ -269,6 +273,13 @@ fn of_surface(known: &Known<'_, '_, '_>, index: usize, (other, within): (&str, f
         return Ok(Verdict::lost("neither surface is sampled"));
     }
     let map = deviation::measure(pair, true, tested.session)?;
+    // where a surface is not solved at all, that no point lies beside the other one follows from it
+    if let [why, others @ ..] = &map.refused[..]
+        && map.deviations.iter().all(Option::is_none)
+    {
+        let details = others.iter().map(|why| why.message.clone()).collect();
+        return Ok(Verdict { holds: false, found: why.message.clone(), details });
+    }
     let Some(sample) = &pair[1].surface.sample else { return Ok(Verdict::lost("no sample")) };
     let deviations: Vec<Option<f64>> = map.deviations.iter().map(|um| um.map(|um| 1e-3 * um)).collect();
     let name = pair[1].whole_name();
@@ -295,7 +306,7 @@ fn of_value<'g>(
     let mut numbers = numbers.iter().map(|number| number.as_constant().unwrap_or(f64::NAN));
     let [value, low, high] = std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN));
     let holds = low <= value && value <= high;
-    let found = precise(dimension, value);
+    let found = if value.is_nan() { NO_NUMBER.to_string() } else { precise(dimension, value) };
     let off = if value < low { value - low } else { value - high };
     let beyond = format!(
         "{} {} {}",

@@ -32,7 +32,7 @@ fn suite(spec: &TestedSpec, out: &mut String) {
     };
     for item in &spec.items {
         for expectation in &item.expectations {
-            let told = || format!("is {}; {}", expectation.found, expectation.details.join("; "));
+            let told = || [std::slice::from_ref(&expectation.found), &expectation.details].concat().join("; ");
             case(&item.name, &expectation.expected, (!expectation.holds).then(told));
         }
     }

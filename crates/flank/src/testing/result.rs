@@ -105,6 +105,11 @@ impl TestedSpec {
             + usize::from(is_wrong)
     }
 
+    /// Whether something in its text is wrong or doubtful that it does not expect.
+    pub fn has_findings(&self) -> bool {
+        self.is_wrong() || !self.items.is_empty() && self.findings.counts()[0] == 0 && !self.findings.is_empty()
+    }
+
     /// Whether its text is wrong in ways that it does not expect.
     pub fn is_wrong(&self) -> bool {
         self.findings.counts()[0] > 0 && self.items.is_empty()

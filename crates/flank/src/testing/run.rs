@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use flank_chain_dsl::limits::FILE_BYTES;
-use flank_chain_dsl::{Compilation, Expectation, Job, Request, Span, compile_request};
+use flank_chain_dsl::{Compilation, Expectation, ExpectedError, Job, Request, Span, compile_request};
 use flank_expr::Graph;
 use rayon::prelude::*;
 
@@ -26,7 +26,7 @@ use crate::testing::snapshot;
 /// threads there are.
 ///
 /// # Errors
-/// If the work is cancelled.
+/// If a filter takes none of their jobs and machines, or the work is cancelled.
 pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResult, Failure> {
     let mut order: Vec<usize> = (0..requests.len()).collect();
     order.sort_by_cached_key(|number| Reverse(size(&requests[*number])));
@@ -37,7 +37,13 @@ pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResul
     });
     let mut tested = tested.collect::<Result<Vec<(usize, TestedSpec)>, Failure>>()?;
     tested.sort_by_key(|(number, _)| *number);
-    Ok(TestResult::of_specs(tested.into_iter().map(|(_, spec)| spec).collect()))
+    let result = TestResult::of_specs(tested.into_iter().map(|(_, spec)| spec).collect());
+    match requests.iter().find_map(|request| request.filter.as_ref()) {
+        Some(filter) if !result.specs.iter().any(TestedSpec::says_something) => Err(Failure::Input(format!(
+            "option `filter {filter}` takes no job and no machine: it is a part of `FILE:NAME`"
+        ))),
+        _ => Ok(result),
+    }
 }
 
 /// How much there is to do for a spec, as far as its text tells: bodies and contacts take longer than anything else.
@@ -67,7 +73,7 @@ pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedS
         read: compilation.sources.files().filter_map(|(_, source)| source.file.clone()).collect(),
     };
     if !compilation.expected_errors.is_empty() {
-        return Ok(wrong_as_expected(&compilation, nothing));
+        return Ok(wrong_as_expected(&compilation, request, nothing));
     }
     if compilation.has_errors() {
         return Ok(nothing);
@@ -141,7 +147,7 @@ fn written(compilation: &Compilation<'_>, span: Span) -> (String, Place) {
 }
 
 /// A spec that must be wrong.
-fn wrong_as_expected(compilation: &Compilation<'_>, nothing: TestedSpec) -> TestedSpec {
+fn wrong_as_expected(compilation: &Compilation<'_>, request: &TestRequest, nothing: TestedSpec) -> TestedSpec {
     let codes: Vec<&str> = nothing
         .findings
         .list()
@@ -149,20 +155,24 @@ fn wrong_as_expected(compilation: &Compilation<'_>, nothing: TestedSpec) -> Test
         .filter(|finding| finding.severity == crate::project::findings::Severity::Error)
         .map(|finding| finding.code)
         .collect();
-    let expectations = compilation.expected_errors.iter().map(|(code, span)| {
-        let (_, place) = written(compilation, *span);
-        let holds = codes.contains(&code.as_str());
-        let found = if codes.is_empty() { "no error".to_string() } else { codes.join(", ") };
-        TestedExpectation { expected: format!("error {code}"), place, holds, found, details: Vec::new() }
-    });
-    let mut expectations: Vec<TestedExpectation> = expectations.collect();
     // every error is one that is expected
-    let expected: Vec<&String> = compilation.expected_errors.iter().map(|(code, _)| code).collect();
-    let others: Vec<&str> = codes.iter().copied().filter(|code| !expected.iter().any(|known| known == code)).collect();
-    if let Some(first) = expectations.first_mut().filter(|_| !others.is_empty()) {
-        first.holds = false;
-        first.details.push(format!("also {}", others.join(", ")));
+    let is_other = |code: &&str| !compilation.expected_errors.iter().any(|known| known.code == *code);
+    let others: Vec<&str> = codes.iter().copied().filter(is_other).collect();
+    let mut items: Vec<TestedItem> = Vec::new();
+    for (number, ExpectedError { job, code, place }) in compilation.expected_errors.iter().enumerate() {
+        let told = number == 0 && !others.is_empty();
+        let expectation = TestedExpectation {
+            expected: format!("error {code}"),
+            place: written(compilation, *place).1,
+            holds: codes.contains(&code.as_str()) && !told,
+            found: if codes.is_empty() { "no error".to_string() } else { codes.join(", ") },
+            details: if told { vec![format!("also {}", others.join(", "))] } else { Vec::new() },
+        };
+        match items.last_mut().filter(|item| item.name == *job) {
+            Some(item) => item.expectations.push(expectation),
+            None => items.push(TestedItem { name: job.clone(), expectations: vec![expectation] }),
+        }
     }
-    let items = vec![TestedItem { name: String::new(), expectations }];
+    items.retain(|item| request.takes(&item.name));
     TestedSpec { items, ..nothing }
 }

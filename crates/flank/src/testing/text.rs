@@ -24,6 +24,14 @@ impl TestedSpec {
     pub(super) fn says_something(&self) -> bool {
         !self.items.is_empty() || self.failed() > 0
     }
+
+    /// How many warnings there are, behind what else is said of it.
+    fn warned(&self) -> String {
+        match self.findings.counts()[1] {
+            0 => String::new(),
+            warnings => format!(", {}", units::counted(warnings, "warning")),
+        }
+    }
 }
 
 /// A line, and what does not hold below it.
@@ -38,9 +46,9 @@ impl Display for TestedSpec {
             _ if self.is_wrong() => {
                 writeln!(f, "{}: {} in the text", self.file, units::counted(self.findings.counts()[0], "error"))?
             }
-            (0, 0) => writeln!(f, "{}: nothing is expected", self.file)?,
-            (_, 0) => writeln!(f, "{}: {all} hold{}", self.file, if passed == 1 { "s" } else { "" })?,
-            _ => writeln!(f, "{}: {failed} of {all} failed", self.file)?,
+            (0, 0) => writeln!(f, "{}: nothing is expected{}", self.file, self.warned())?,
+            (_, 0) => writeln!(f, "{}: {all} hold{}{}", self.file, if passed == 1 { "s" } else { "" }, self.warned())?,
+            _ => writeln!(f, "{}: {failed} of {all} failed{}", self.file, self.warned())?,
         }
         if let Some(why) = &self.failure {
             writeln!(f, "  {why}")?;
@@ -49,7 +57,7 @@ impl Display for TestedSpec {
             for expectation in item.expectations.iter().filter(|expectation| !expectation.holds) {
                 let at = format!("{}:{}", expectation.place.line, expectation.place.column);
                 writeln!(f, "  {}:{at}: {}", item.name, expectation.expected)?;
-                writeln!(f, "    is {}", expectation.found)?;
+                writeln!(f, "    found: {}", expectation.found)?;
                 expectation.details.iter().try_for_each(|line| writeln!(f, "    {line}"))?;
             }
         }

@@ -17,7 +17,7 @@ use crate::values::dimension::{Dimension, shown};
 use crate::values::value::{Scope, Value};
 
 use super::Builder;
-use model::{Expectation, Expected};
+use model::{Expectation, Expected, ExpectedError};
 use quantities::Named;
 
 pub(crate) use machine::of_machine;
@@ -28,6 +28,10 @@ const STATUSES: [&str; 8] =
 
 /// What stands for all sampled surfaces.
 const ALL: &str = "all";
+
+/// Why expectations never fail.
+const SAME: &str = "both sides are the same";
+const ITSELF: &str = "it compares a surface with itself";
 
 /// Curvatures of points, by their names in tables.
 const CURVATURES: [&str; 4] = ["k1", "k2", "induced_k1", "induced_k2"];
@@ -47,15 +51,15 @@ fn never_fails(context: &mut Context<'_>, span: Span, why: &str) {
     context.report(Diagnostic::new(Code::NeverFails, span, message).help(help));
 }
 
-/// The errors that a file is to have, with their places; reports codes that there are not.
-pub(crate) fn errors(context: &mut Context<'_>, job: &ast::Job) -> Vec<(String, Span)> {
+/// The errors that a job is to have; reports codes that there are not.
+pub(crate) fn errors(context: &mut Context<'_>, job: &ast::Job) -> Vec<ExpectedError> {
     let mut found = Vec::new();
     for statement in &job.statements {
         let JobStatement::Expect(ast::Expectation { what: ast::Expected::Error(code), .. }) = statement else {
             continue;
         };
         if Code::ALL.iter().any(|known| known.as_str() == code.node) {
-            found.push((code.node.clone(), code.span));
+            found.push(ExpectedError { job: job.name.node.clone(), code: code.node.clone(), place: code.span });
         } else {
             context.unknown(code, "error", Code::ALL.iter().map(|known| known.as_str()));
         }
@@ -221,10 +225,15 @@ impl<'g> Builder<'_, 'g> {
         span: Span,
     ) -> Option<Expected<'g>> {
         let all = [value, ends[0], ends[1]];
-        if context.variables_of(&all).is_empty() {
-            let [value, low, high] = all.map(|expr| expr.as_constant().unwrap_or(f64::NAN));
-            if low <= value && value <= high {
-                never_fails(context, span, "it compares constants");
+        let zero = value.graph().constant(0.0);
+        // what a job inherits may compare it with itself
+        let of_itself = named.list.iter().filter(|(_, quantity)| self.user.is_none() && quantity.is_of_itself());
+        let of_itself: Vec<(Expr<'g>, Expr<'g>)> = of_itself.map(|(variable, _)| (*variable, zero)).collect();
+        let known = value.graph().substitute(&all, &of_itself);
+        if context.variables_of(&known).is_empty() {
+            let numbers: Vec<f64> = known.iter().map(|expr| expr.as_constant().unwrap_or(f64::NAN)).collect();
+            if numbers[1] <= numbers[0] && numbers[0] <= numbers[2] {
+                never_fails(context, span, if of_itself.is_empty() { "it compares constants" } else { ITSELF });
             }
         }
         Some(Expected::Value { value, ends, quantities: named.list, dimension })
@@ -244,6 +253,9 @@ impl<'g> Builder<'_, 'g> {
             let target = context.scalar(target, &scope, dimension, "what the value is compared with")?;
             let within = self.tolerance(context, within, dimension)?;
             let (value, ends) = (value - target, [-within, within]);
+            if value.as_constant() == Some(0.0) {
+                never_fails(context, span, SAME);
+            }
             return Some(Expected::AtPoints { surface, value, known, dimension, ends });
         }
         if let Some(surface) = self.as_surface(value) {
@@ -254,6 +266,9 @@ impl<'g> Builder<'_, 'g> {
         let (value, dimension) = scalar(context, &value, &named.scope)?;
         let target = context.scalar(&target, &named.scope, dimension, "what the value is compared with")?;
         let within = self.tolerance(context, within, dimension)?;
+        if value.as_constant().is_none() && (value - target).as_constant() == Some(0.0) {
+            never_fails(context, span, SAME);
+        }
         self.value(context, (value, [target - within, target + within]), dimension, named, span)
     }
 
@@ -285,7 +300,7 @@ impl<'g> Builder<'_, 'g> {
                 // what a job inherits may compare it with itself
                 let is_own = other == format!("{}.{}", job.name.node, path.joined());
                 if is_own && self.user.is_none() {
-                    never_fails(context, span, "it compares a surface with itself");
+                    never_fails(context, span, ITSELF);
                 }
                 Some(Expected::Surface { surface, other, within })
             }

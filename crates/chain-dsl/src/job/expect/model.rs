@@ -6,6 +6,17 @@ use crate::diagnostics::source::Span;
 use crate::model::{Coordinate, Job};
 use crate::values::dimension::Dimension;
 
+/// An error that a file is to have: `expect error E0307`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExpectedError {
+    /// The job that says so.
+    pub job: String,
+    /// The code of the error.
+    pub code: String,
+    /// Where that is said.
+    pub place: Span,
+}
+
 /// Something that a job, or a machine, is to be like.
 #[derive(Clone, Debug)]
 pub struct Expectation<'g> {
@@ -147,6 +158,13 @@ pub enum Quantity<'g> {
         /// Values of the job's motions, in its order; the middle where nothing is said.
         at: Vec<Option<f64>>,
     },
+}
+
+impl Quantity<'_> {
+    /// Whether it says how a surface lies to itself.
+    pub(super) fn is_of_itself(&self) -> bool {
+        matches!(self, Quantity::Deviation { surfaces: [one, other], .. } if one == other)
+    }
 }
 
 /// Points of a surface.

@@ -213,7 +213,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let setting = self.problem.settings[k];
             let shown = |value: f64| units::shown(setting.dimension, value);
             let (change, held) = (of.fit.values[k] - setting.value, of.fit.held[k]);
-            // what stands on a step is held there too
+            // what is held at no end stands on a step
             let Range { low, high } = self.problem.unknowns[k].range;
             let at_end = held.filter(|_| of.fit.values[k] <= low || of.fit.values[k] >= high);
             let is_told = of.fit.directions.iter().filter(|of| !of.is_used).all(|of| of.shares[k].abs() <= SHARE);
@@ -230,6 +230,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
                     RangeEnd::Low => RangeBound::Low,
                     RangeEnd::High => RangeBound::High,
                 }),
+                is_rounded: held.is_some() && at_end.is_none(),
                 moves_um: 1e3 * change.abs() * rms(&of.effect(k)),
                 uncertain_by: uncertain.filter(|_| held.is_none() && is_told && is_settled).map(shown),
             }
@@ -356,7 +357,7 @@ fn told(of: &SingularDirection, unknowns: &[Unknown<'_, '_>]) -> SettingsDirecti
     SettingsDirection { moves_um: 1e3 * of.size, is_used: of.is_used, changes: changes.collect() }
 }
 
-fn rms(of: &[f64]) -> f64 {
+pub(super) fn rms(of: &[f64]) -> f64 {
     (of.iter().map(|x| x * x).sum::<f64>() / of.len().max(1) as f64).sqrt()
 }
 

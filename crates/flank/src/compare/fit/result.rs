@@ -142,10 +142,12 @@ pub struct AdjustedSetting {
     pub new: f64,
     /// The end of its range that holds it, if one does.
     pub at_bound: Option<RangeBound>,
+    /// Whether the value was brought onto its step, and stands there exactly.
+    pub is_rounded: bool,
     /// What the change moves the flank by, root of the mean square.
     pub moves_um: f64,
-    /// One standard deviation, from what is left; null where the points do not determine the setting, an end of its range holds it, or the
-    /// search came to no end.
+    /// One standard deviation, from what is left; null where the points do not determine the setting, an end of its range holds it, it
+    /// is rounded to its step, or the search came to no end.
     pub uncertain_by: Option<f64>,
 }
 

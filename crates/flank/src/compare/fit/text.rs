@@ -116,6 +116,7 @@ fn cells(of: &AdjustedSetting) -> [String; 8] {
     let uncertain = match (of.uncertain_by, of.at_bound) {
         (Some(by), _) => format!("{by:.2e}"),
         (None, Some(_)) => "-".to_string(),
+        (None, None) if of.is_rounded => "rounded".to_string(),
         (None, None) => "not determined".to_string(),
     };
     [of.name.clone(), now, change, new, of.unit.clone(), bound.to_string(), fixed(of.moves_um, 3), uncertain]

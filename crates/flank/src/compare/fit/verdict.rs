@@ -1,9 +1,11 @@
 //! Whether a fit is what was asked for, and what speaks against it.
 
+use flank_export::fixed;
 use flank_solver::{AdjustedSurfaces, linear_rest};
 
-use super::fitting::Fitting;
+use super::fitting::{Fitting, rms};
 use super::result::{FitResult, KeptSurface, OutlyingPoint};
+use super::words::NOTHING;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::FitRequest;
 
@@ -27,7 +29,7 @@ pub(super) fn judged(
     let left = result.identification.as_ref().unwrap_or(&result.correction).left_um.max(corrected);
     if left > result.within_um {
         let message = format!("not met: {left:.3} um rms is left of {surface}, more than {} um", result.within_um);
-        let reasons = reasons(&result, fitting, (request, main));
+        let reasons = reasons(&result, (request, main));
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, surface, message).with(reasons));
     }
     if left <= result.within_um && !is_settled(&result) {
@@ -69,6 +71,7 @@ pub(super) fn judged(
     if let Some(remark) = not_shown(&result, fitting, (request, main)) {
         result.remarks.push(remark);
     }
+    result.remarks.extend(fitting.reversed(request, main));
     result
 }
 
@@ -104,20 +107,16 @@ fn not_shown(
     let is_chance = count > rank && main.rms() > CHANCE.sqrt() * scatter * fitting.now.rms();
     is_chance.then(|| {
         let message = format!(
-            "the settings take {:.3} of {:.3} um rms away, not much more than they would of measuring noise alone: the changes may mean nothing",
-            result.before_um - 1e3 * main.rms(),
-            result.before_um
+            "the settings take {} of {} um rms away, not much more than they would of measuring noise alone: the changes may mean nothing",
+            fixed(result.before_um - 1e3 * main.rms(), 3),
+            fixed(result.before_um, 3)
         );
         Remark::new(RemarkKind::NotShown, surface, message)
     })
 }
 
 /// Why no settings do it.
-fn reasons(
-    result: &FitResult,
-    fitting: &Fitting<'_, '_>,
-    (request, main): (&FitRequest, &AdjustedSurfaces),
-) -> Vec<String> {
+fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)) -> Vec<String> {
     let mut reasons = Vec::new();
     let bound: Vec<&str> =
         result.correction.settings.iter().filter(|of| of.at_bound.is_some()).map(|of| of.name.as_str()).collect();
@@ -140,37 +139,55 @@ fn reasons(
             all - unused
         ));
     }
-    reasons.extend(fitting.reversed(request, main));
     reasons
 }
 
 impl Fitting<'_, '_> {
     /// Whether the same deviations from the other end, or upside down, go with the settings.
-    fn reversed(&self, request: &FitRequest, main: &AdjustedSurfaces) -> Option<String> {
-        let [aim] = self.aims else { return None };
-        let is_whole = self.problem.places[0].len() == aim.points.len() && !request.is_wish();
-        let [rows, columns] = aim.counts;
+    fn reversed(&self, request: &FitRequest, main: &AdjustedSurfaces) -> Option<Remark> {
+        if request.is_wish() || main.rms() < NOTHING {
+            return None;
+        }
         let mut effects: Vec<Vec<f64>> = (0..self.problem.settings.len())
             .filter(|k| main.fit.values[*k] != self.problem.settings[*k].value)
-            .map(|k| self.now.effect(k))
+            .map(|k| self.problem.part(self.now.effect(k)))
             .collect();
         effects.extend(self.turn_effects());
-        let off = &self.now.fit.residuals;
-        let from = |at: usize, [is_up, is_back]: [bool; 2]| {
-            let (row, column) = (at / columns, at % columns);
-            let row = if is_up { rows - 1 - row } else { row };
-            off[row * columns + if is_back { columns - 1 - column } else { column }]
-        };
         let ways = [([false, true], "columns"), ([true, false], "rows"), ([true, true], "rows and columns")];
-        let rest = |way: [bool; 2]| {
-            let reversed: Vec<f64> = (0..off.len()).map(|at| from(at, way)).collect();
-            1e3 * linear_rest(&reversed, &effects, 0.0)
-        };
-        let found = ways.into_iter().filter(|_| is_whole).map(|(way, what)| (rest(way), what));
-        let found = found.filter(|(rest, _)| *rest < REVERSED * 1e3 * main.rms());
-        let (rest, what) = found.reduce(|best, next| if next.0 < best.0 { next } else { best })?;
-        Some(format!(
+        let found = ways.into_iter().filter_map(|(way, what)| Some((self.left_reversed(way, &effects, main)?, what)));
+        let found = found.filter(|([rest, left], _)| *rest < REVERSED * left);
+        let ([rest, _], what) = found.reduce(|best, next| if next.0[0] < best.0[0] { next } else { best })?;
+        let message = format!(
             "with the {what} in the other order {rest:.3} um would be left: is the grid that of this flank, from the same end?"
-        ))
+        );
+        Some(Remark::new(RemarkKind::OtherOrder, &self.aims[0].of.surface.name, message))
+    }
+
+    /// What effects leave of the deviations in another order, um rms, and what the fit leaves of these points in theirs.
+    fn left_reversed(&self, way: [bool; 2], effects: &[Vec<f64>], main: &AdjustedSurfaces) -> Option<[f64; 2]> {
+        let partners = self.partners(way);
+        // of half as many unknowns chance alone would leave 0.7
+        if partners.len() < 2 * effects.len() {
+            return None;
+        }
+        let reversed: Vec<f64> = partners.iter().map(|(_, from)| self.now.fit.residuals[*from]).collect();
+        let own = |of: &[f64]| partners.iter().map(|(at, _)| of[*at]).collect::<Vec<f64>>();
+        let effects: Vec<Vec<f64>> = effects.iter().map(|of| own(of)).collect();
+        Some([linear_rest(&reversed, &effects, 0.0), rms(&own(&main.fit.residuals))].map(|left| 1e3 * left))
+    }
+
+    /// Of points the ones that stand at their places in the other order of rows, columns or both, where these were measured.
+    fn partners(&self, [is_up, is_back]: [bool; 2]) -> Vec<(usize, usize)> {
+        let (mut partners, mut first) = (Vec::new(), 0);
+        for (aim, places) in self.aims.iter().zip(&self.problem.places) {
+            let [rows, columns] = aim.counts;
+            let turned = |at: usize, count: usize, is_turned: bool| if is_turned { count - 1 - at } else { at };
+            partners.extend(places.iter().enumerate().filter_map(|(k, at)| {
+                let from = turned(at / columns, rows, is_up) * columns + turned(at % columns, columns, is_back);
+                Some((first + k, first + places.binary_search(&from).ok()?))
+            }));
+            first += places.len();
+        }
+        partners
     }
 }

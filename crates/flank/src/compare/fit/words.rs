@@ -8,7 +8,7 @@ use super::settings::change;
 use crate::project::units;
 
 /// A direction that moves the flank by less, mm, root of the mean square, does nothing that a machine would measure.
-const NOTHING: f64 = 1e-6;
+pub(super) const NOTHING: f64 = 1e-6;
 /// A share of a direction that counts.
 pub(super) const SHARE: f64 = 1e-2;
 /// A share of the largest one in a direction that is worth a word.

@@ -119,7 +119,9 @@ fn of_table(job: &Job<'_>, file: &str, text: &str) -> Result<(Vec<StudyInput>, C
     for (number, line) in lines.take_while(|_| columns.len() == heads.len()) {
         let cells: Vec<&str> = line.split(',').map(str::trim).collect();
         if cells.len() != columns.len() {
-            wrong.push(format!("{file}:{number}: {} values in {} columns", cells.len(), columns.len()));
+            let [values, heads] =
+                [(cells.len(), "value"), (columns.len(), "column")].map(|(n, of)| units::counted(n, of));
+            wrong.push(format!("{file}:{number}: {values} in {heads}"));
             continue;
         }
         let row: Vec<Option<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();

@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use super::plan::{Plan, write_text};
 use super::row::{Cases, Found};
+use super::stored::{StoredChunk, StoredRows};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::session::{EvaluatorOptions, Session};
@@ -37,6 +38,8 @@ const LISTED: usize = 100;
 pub(super) struct Tally {
     /// Chunks that are there.
     pub(super) done: usize,
+    /// Files of chunks that do not hold the rows of the plan.
+    pub(super) damaged: Vec<PathBuf>,
     /// Rows by their verdict.
     pub(super) verdicts: BTreeMap<String, u64>,
     /// Numbers of the first cases whose verdict is not `done`.
@@ -48,7 +51,7 @@ impl Tally {
     pub(super) fn add<'r>(&mut self, plan: &Plan, chunk: usize, rows: impl Iterator<Item = &'r str>) {
         self.done += 1;
         for (number, row) in plan.numbers(chunk).zip(rows) {
-            let verdict = verdict_of(plan, row).unwrap_or("crashed");
+            let verdict = plan.verdict_of(row);
             match self.verdicts.get_mut(verdict) {
                 Some(count) => *count += 1,
                 None => _ = self.verdicts.insert(verdict.to_string(), 1),
@@ -70,15 +73,6 @@ pub(super) struct Work<'w> {
 }
 
 impl Plan {
-    /// Where the rows of a chunk stand.
-    pub(super) fn chunk_file(&self, folder: &Path, chunk: usize) -> PathBuf {
-        Plan::file_of_hash(folder, &self.hash_of_chunk(chunk))
-    }
-
-    fn file_of_hash(folder: &Path, hash: &str) -> PathBuf {
-        folder.join("chunks").join(format!("{hash}.csv"))
-    }
-
     /// Where the points of a case stand, if they are kept.
     fn points_file(&self, folder: &Path, values: &[f64]) -> PathBuf {
         folder.join(POINTS).join(format!("{}.csv", self.hash_of_case(values)))
@@ -103,7 +97,7 @@ impl Plan {
             .collect()
     }
 
-    /// Hands over the texts of the chunks that are there, one by one in their order, and counts their rows.
+    /// Hands over the texts of the chunks that are whole, one by one in their order, and counts their rows.
     ///
     /// # Errors
     /// What `each` gives.
@@ -114,9 +108,15 @@ impl Plan {
         each: &mut dyn FnMut(&str) -> Result<(), WriteError>,
     ) -> Result<(), WriteError> {
         for chunk in 0..self.chunks() {
-            let Ok(rows) = std::fs::read_to_string(self.chunk_file(folder, chunk)) else { continue };
-            tally.add(self, chunk, rows.lines().skip(1));
-            each(&rows)?;
+            let stored = self.stored(folder, chunk);
+            match stored.rows {
+                StoredRows::Missing => {}
+                StoredRows::Damaged => tally.damaged.push(stored.file),
+                StoredRows::Whole(text) => {
+                    tally.add(self, chunk, text.lines().skip(1));
+                    each(&text)?;
+                }
+            }
         }
         Ok(())
     }
@@ -145,17 +145,16 @@ pub(super) fn shown(number: f64) -> String {
 }
 
 impl Work<'_> {
-    /// Computes a chunk unless it is there, and counts its rows.
+    /// Computes a chunk unless it is there as a whole, and counts its rows.
     ///
     /// # Errors
     /// If the work is cancelled, or something cannot be written.
     pub(super) fn chunk(&self, chunk: usize, again: &[String], tally: &mut Tally) -> Result<(), Failure> {
         let start = Instant::now();
-        let hash = self.plan.hash_of_chunk(chunk);
-        let file = Plan::file_of_hash(self.folder, &hash);
-        let known = match std::fs::read_to_string(&file) {
-            Ok(text) => {
-                let is_wanted = |row: &str| verdict_of(self.plan, row).is_some_and(|of| again.iter().any(|o| o == of));
+        let StoredChunk { hash, file, rows } = self.plan.stored(self.folder, chunk);
+        let known = match rows {
+            StoredRows::Whole(text) => {
+                let is_wanted = |row: &str| again.iter().any(|of| of == self.plan.verdict_of(row));
                 let rows: Vec<String> = text.lines().skip(1).map(str::to_string).collect();
                 if !rows.iter().any(|row| is_wanted(row)) {
                     tally.add(self.plan, chunk, rows.iter().map(String::as_str));
@@ -163,7 +162,7 @@ impl Work<'_> {
                 }
                 rows.into_iter().map(|row| (!is_wanted(&row)).then_some(row)).collect()
             }
-            Err(_) => vec![None; self.plan.numbers(chunk).count()],
+            StoredRows::Missing | StoredRows::Damaged => vec![None; self.plan.numbers(chunk).count()],
         };
         let journal = Journal::begin(&self.folder.join("open").join(&hash))?;
         let rows = if journal.attempts > CAREFUL {
@@ -238,11 +237,6 @@ impl Work<'_> {
         self.cases.keep(&self.plan.points_file(self.folder, &values), &values, &found)?;
         Ok(self.plan.row(number, &values, &found))
     }
-}
-
-/// The verdict in a row.
-pub(super) fn verdict_of<'r>(plan: &Plan, row: &'r str) -> Option<&'r str> {
-    row.split(',').nth(2 + plan.inputs.len())
 }
 
 /// Ends a case that takes too long.

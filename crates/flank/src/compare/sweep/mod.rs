@@ -8,6 +8,7 @@ mod plan;
 pub(crate) mod request;
 pub(crate) mod result;
 mod row;
+mod stored;
 mod study;
 
 use std::path::Path;
@@ -167,14 +168,14 @@ pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepRe
     }
     let mut result = SweepResult::of(study, &plan, tally);
     result.files.extend(out.map(shown_path));
-    let missing = plan.chunks() - result.done;
+    let missing = plan.chunks() - result.done - result.damaged.len();
     if missing > 0 {
         let message = format!(
             "{missing} of {} of {} are not computed",
             units::counted(plan.chunks(), "chunk"),
             shown_path(study)
         );
-        result.not_done.push(NotDone::new(NotDoneKind::NotSolved, &plan.job, message));
+        result.not_done.insert(0, NotDone::new(NotDoneKind::NotSolved, &plan.job, message));
     }
     Ok((text, result))
 }

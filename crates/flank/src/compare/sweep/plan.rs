@@ -108,13 +108,16 @@ impl Plan {
         shortened(hash)
     }
 
-    /// Of its cases and of where they begin: rows have numbers, and the same cases may come again further below.
-    pub(super) fn hash_of_chunk(&self, chunk: usize) -> String {
+    /// The hashes of the cases in a chunk.
+    pub(super) fn hashes_of_cases(&self, chunk: usize) -> Vec<String> {
+        self.numbers(chunk).map(|number| self.hash_of_case(&self.values(number))).collect()
+    }
+
+    /// Of the hashes of its cases and of where they begin: rows have numbers, and the same cases may come again further below.
+    pub(super) fn hash_of_chunk(&self, chunk: usize, cases: &[String]) -> String {
         let mut hash = Sha256::new();
         hash.update(self.numbers(chunk).start.to_le_bytes());
-        for number in self.numbers(chunk) {
-            hash.update(self.hash_of_case(&self.values(number)).as_bytes());
-        }
+        cases.iter().for_each(|case| hash.update(case.as_bytes()));
         shortened(hash)
     }
 

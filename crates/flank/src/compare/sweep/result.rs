@@ -10,8 +10,11 @@ use serde::Serialize;
 use super::chunks::Tally;
 use super::plan::Plan;
 use crate::project::answer::{Answer, Timing};
-use crate::project::remark::NotDone;
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::{shown_path, units};
+
+/// Damaged files that a message lists.
+const LISTED: usize = 5;
 
 /// How far a study is, of `flank sweep`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -31,6 +34,8 @@ pub struct SweepResult {
     pub chunks: usize,
     /// Chunks that are there; of a run over some chunks, those of them.
     pub done: usize,
+    /// Files of chunks that do not hold the rows of the plan, cut off or edited: none of them counts, and a run computes them anew.
+    pub damaged: Vec<String>,
     /// Rows that are there by their verdict: `done`, `not all solved`, `spec wrong`, `limit`, `crashed`.
     pub verdicts: BTreeMap<String, u64>,
     /// Numbers of cases whose verdict is not `done`, the first hundred of them.
@@ -46,6 +51,7 @@ pub struct SweepResult {
 impl SweepResult {
     /// Of chunks that were looked at.
     pub(super) fn of(study: &Path, plan: &Plan, tally: Tally) -> SweepResult {
+        let damaged: Vec<String> = tally.damaged.iter().map(|file| shown_path(file)).collect();
         SweepResult {
             study: shown_path(study),
             job: plan.job.clone(),
@@ -54,13 +60,28 @@ impl SweepResult {
             cases: plan.cases.count(),
             chunks: plan.chunks(),
             done: tally.done,
+            not_done: told(&damaged, study, plan).into_iter().collect(),
+            damaged,
             verdicts: tally.verdicts,
             failed: tally.failed,
             files: Vec::new(),
-            not_done: Vec::new(),
             timing: None,
         }
     }
+}
+
+/// What is said of damaged chunks.
+fn told(damaged: &[String], study: &Path, plan: &Plan) -> Option<NotDone> {
+    let message = format!(
+        "not counted: {} of {} of {}, where rows of the plan are missing or damaged; a run computes them anew",
+        damaged.len(),
+        units::counted(plan.chunks(), "chunk"),
+        shown_path(study)
+    );
+    let more = damaged.len().saturating_sub(LISTED);
+    let files = damaged.iter().take(LISTED).cloned();
+    let details = files.chain((more > 0).then(|| format!("and {more} more"))).collect();
+    (!damaged.is_empty()).then(|| NotDone::new(NotDoneKind::NotSolved, &plan.job, message).with(details))
 }
 
 impl Answer for SweepResult {

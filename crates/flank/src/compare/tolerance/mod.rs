@@ -32,6 +32,8 @@ use crate::project::{shown_path, units};
 
 /// Random cases and linear numbers differ if they lie farther apart than so many standard errors.
 const DIFFERENT: f64 = 3.0;
+/// Random cases that change a number by less are not told: four decimals show zeros.
+const SHOWN: f64 = 5e-5;
 /// What has less than this share of the largest change of a result is rounding.
 const NOTHING: f64 = 1e-9;
 
@@ -179,7 +181,7 @@ fn quantities(
             false
         }
     });
-    Ok(all)
+    Ok(all.into_iter().map(|quantity| quantity.without_rounding(causes)).collect())
 }
 
 fn no_contact(name: &str) -> NotDone {
@@ -264,9 +266,8 @@ fn not_linear(of: &ToleratedResult, cases: usize) -> Option<Remark> {
     let (swept, linear, count) = (of.swept?, of.standard_deviation, cases as f64);
     let mean = swept.mean.abs() > DIFFERENT * linear / count.sqrt();
     let spread = (swept.standard_deviation - linear).abs() > DIFFERENT * linear / (2.0 * (count - 1.0)).sqrt();
-    // what nothing moves is rounding
-    let is_something = linear > 0.0 && (mean || spread);
-    is_something.then(|| {
+    let is_shown = swept.mean.abs().max(swept.standard_deviation) >= SHOWN;
+    (is_shown && (mean || spread)).then(|| {
         let message = format!(
             "{}: over {cases} random cases the mean is {:.4} and the standard deviation {:.4} {}, the linear numbers are 0 and {linear:.4}: \
              over these tolerances it is not proportional to them",

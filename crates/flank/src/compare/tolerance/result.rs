@@ -86,7 +86,8 @@ pub struct ToleratedResult {
     pub wanted: Option<f64>,
     /// For each cause in their order: what one standard deviation of it alone changes.
     pub changes: Vec<f64>,
-    /// For each cause its share of the variance, with half of what correlated pairs add; their sum is 1.
+    /// For each cause its share of the variance, with half of what correlated pairs add; their sum is 1. All are 0 where nothing
+    /// moves the number beyond what points are solved to.
     pub shares: Vec<f64>,
     /// What random cases showed; null where none were asked for.
     pub swept: Option<SweptResult>,

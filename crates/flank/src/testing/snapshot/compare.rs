@@ -41,7 +41,7 @@ pub(super) fn told(
             let name = format!("{}.{}", tested.job.name, surface.name);
             let both = (before.iter().find(|old| whole(old) == name), now.iter().find(|new| whole(new) == name));
             let (Some(old), Some(new)) = both else { continue };
-            if old == new {
+            if old.is_same(new) {
                 continue;
             }
             let beside = Beside::new(tested, index, old);
@@ -137,9 +137,7 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
             }
         }
         lines.extend(self.other_branch(&name, points));
-        if self.old.coordinates != new.coordinates || self.old.counts != new.counts {
-            lines.push(format!("{name}: its sample is another one"));
-        }
+        lines.extend(self.other_sample(&name, new));
         if self.old.work != new.work && lines.is_empty() {
             let [[old, old_boxes], [new, new_boxes]] = [self.old.work, new.work];
             lines.push(format!(
@@ -150,6 +148,22 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
             lines.push(format!("{name}: its sample, its frame or its last digits differ"));
         }
         lines
+    }
+
+    /// What differs in the places that are asked for.
+    fn other_sample(&self, name: &str, new: &KeptSurface) -> Option<String> {
+        let old = self.old;
+        if old.coordinates != new.coordinates {
+            let [before, now] = [old, new].map(|of| of.coordinates.join(" and "));
+            Some(format!("{name}: its sample is by {now} instead of {before}"))
+        } else if old.asked != new.asked {
+            let now = units::counted(new.asked, "point");
+            Some(format!("{name}: its sample is another one: {now} of it are looked at instead of {}", old.asked))
+        } else if !old.is_at_places_of(new) {
+            Some(format!("{name}: its sample has other places"))
+        } else {
+            None
+        }
     }
 
     /// Slopes of what moved: pressure angle along the profile, helix angle along the tooth.

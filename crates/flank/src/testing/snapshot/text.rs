@@ -36,6 +36,19 @@ pub(super) struct Kept {
     pub(super) unknowns: Vec<f64>,
 }
 
+impl KeptSurface {
+    /// Whether both are the same in what is written of them.
+    pub(super) fn is_same(&self, other: &KeptSurface) -> bool {
+        written("", std::slice::from_ref(self)) == written("", std::slice::from_ref(other))
+    }
+
+    /// Whether the points of both are at the same places, in the digits that are written.
+    pub(super) fn is_at_places_of(&self, other: &KeptSurface) -> bool {
+        let places = |of: &KeptSurface| of.points.iter().map(|point| numbers(&point.at)).collect::<Vec<String>>();
+        self.counts == other.counts && places(self) == places(other)
+    }
+}
+
 impl Kept {
     pub(super) fn is_solved(&self) -> bool {
         self.status == "solved"

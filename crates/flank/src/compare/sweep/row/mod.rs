@@ -28,8 +28,12 @@ use crate::project::requests::JobSelection;
 use crate::project::session::Session;
 use crate::solve::starts::Asked;
 
+/// What may become of a case.
+pub(super) const VERDICTS: [&str; 5] = ["done", "not all solved", "spec wrong", "limit", "crashed"];
+
 /// What became of a case.
 pub(super) struct Found {
+    /// One of [`VERDICTS`].
     pub(super) verdict: &'static str,
     /// A code: of the first error of the spec, of the first thing that was not done.
     pub(super) why: String,
