@@ -20,6 +20,9 @@ const ENDS: f64 = 1e-7;
 const STEP: f64 = 1e-6;
 /// The tip of a face gear is this flat: its slope against a plane across the axis.
 const FLAT: f64 = 0.1;
+/// Cosine between the normals of the ground and of a chart that runs out into it: a flank stands on it by more than 30 degrees, steeper than any
+/// pressure angle leaves it.
+const RUNS_OUT: f64 = 0.87;
 /// Singular values below this share of the largest are directions in which a gauge may slide.
 const SLIDES: f64 = 1e-5;
 
@@ -108,16 +111,32 @@ impl Body {
             .map(|(k, share)| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))))
     }
 
-    /// The charts that are the flanks: on each side the deepest one.
+    /// The charts that are the flanks: on each side the deepest one above the fillet. A fillet runs out into the ground, and may be deeper than
+    /// what it leaves of a flank that is cut under; a chamfer above the flank is not. Where all run out so, the one at the tip.
     fn flanks(&self) -> [usize; 2] {
-        let depth = |k: &usize| {
-            let [from, to] =
-                [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[*k].at([share, 0.5]))));
-            (to - from).abs()
+        let last = self.charts().len() - 1;
+        let ground = self.normal_at(self.charts().len() / 2, if last.is_multiple_of(2) { 0.5 } else { 0.0 });
+        let flank = |side: Vec<usize>, inner: f64| {
+            let above = side.iter().filter(|k| self.normal_at(**k, inner).dot(&ground) < RUNS_OUT);
+            above.max_by(|a, b| self.height(**a).total_cmp(&self.height(**b))).copied().unwrap_or(side[0])
         };
-        let count = self.charts().len();
-        let deepest = |side: std::ops::Range<usize>| side.max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(0);
-        [deepest(0..count.div_ceil(2)), deepest(count / 2..count)]
+        [flank((0..=last / 2).collect(), 1.0), flank((last.div_ceil(2)..=last).rev().collect(), 0.0)]
+    }
+
+    /// How much of the teeth's depth a chart has, half-way along, mm.
+    fn height(&self, k: usize) -> f64 {
+        let [from, to] = [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))));
+        (to - from).abs()
+    }
+
+    /// The normal at a share across a chart, half-way along: along the axis, away from it, and around it.
+    fn normal_at(&self, k: usize, share: f64) -> Vector3<f64> {
+        let (at, normal) = touched(&self.charts()[k], [share, 0.5]);
+        let out = match self.arrangement {
+            Arrangement::Round => (normal.x * at.x + normal.y * at.y) / at.x.hypot(at.y),
+            Arrangement::Straight { .. } => normal.x,
+        };
+        Vector3::new(normal.z, out, self.arrangement.along(at.into(), normal))
     }
 
     /// The tooth's thickness at a distance from the axis (of a face gear at a z), half-way along; `None` where a flank does not reach there.
