@@ -108,7 +108,7 @@ fn one(
         SolidPart::Tooth => BodyPart::Tooth,
         SolidPart::Space => BodyPart::Space,
     };
-    let mesh = body.mesh(part, &body.fineness(request.deviation));
+    let mesh = body.mesh(part, &body.fineness(part, request.deviation));
     let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
     let written =
         BodyMesh { name: &solid.name, frame: &solid.frame, vertices: &mesh.vertices, triangles: &mesh.triangles };
