@@ -233,3 +233,8 @@ fn faulty(solid: &Solid, blank: &Blank, fault: BodyFault) -> Failure {
         ),
     }.into()
 }
+        BodyFault::NoWall { segment, place: [z, rho] } => format!(
+            "the spaces of `{}` reach `{}` of its outline at z {z:.4} mm, {rho:.4} mm from {}: no wall is left between them",
+            solid.name, segments[segment].name,
+            if blank::arrangement(solid).is_closed() { "the axis" } else { "x = 0" }
+        ),
