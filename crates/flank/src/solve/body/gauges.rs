@@ -56,15 +56,15 @@ fn middle_ball(body: &Body, rho: f64) -> f64 {
 }
 
 fn thickness_numbers(body: &Body, of: Thickness) -> ThicknessNumbers {
-    let Thickness { rho, z, arc, chord, chord_height } = of;
+    let Thickness { rho, z, arc, chord } = of;
     let is_round = body.arrangement().is_closed();
     ThicknessNumbers {
         diameter_mm: is_round.then_some(2.0 * rho),
         x_mm: (!is_round).then_some(rho),
         z_mm: z,
         arc_mm: arc,
-        chord_mm: chord,
-        chord_height_mm: chord_height,
+        chord_mm: chord.map(|chord| chord.length),
+        chord_height_mm: chord.map(|chord| chord.height),
     }
 }
 
