@@ -261,11 +261,17 @@ impl Body {
         })
     }
 
-    /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends.
+    /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends, and of a single space,
+    /// which has none opposite.
     pub fn ball(&self, diameter: f64) -> Option<BallGauge> {
-        let [low, high] = self.flanks().map(|k| &self.charts()[k]);
+        if self.teeth() < 2 {
+            return None;
+        }
+        let flanks = self.flanks();
+        let shift = self.across_space(flanks.map(|k| Some((k, 0.5, 0.0)))).map_or(0.0, |way| way.shift);
+        let [low, high] = flanks.map(|k| &self.charts()[k]);
         let z = low.at([0.5; 2])[2];
-        let starts = [touched(low, [0.5; 2]), touched(high, [0.5; 2])];
+        let starts = [touched(low, [0.5, 0.5 + shift]), touched(high, [0.5, 0.5 - shift])];
         let start = 0.5 * (starts[0].0 + starts[1].0 + 0.5 * diameter * (starts[0].1 + starts[1].1));
         let residual = |x: &[f64]| {
             let centre = Vector3::new(x[4], x[5], z);
@@ -276,7 +282,7 @@ impl Body {
             let (a, b) = (off(low, [x[0], x[1]]), off(high, [x[2], x[3]]));
             vec![a.x, a.y, a.z, b.x, b.y, b.z]
         };
-        let x = solved(residual, vec![0.5, 0.5, 0.5, 0.5, start.x, start.y])?;
+        let x = solved(residual, vec![0.5, 0.5 + shift, 0.5, 0.5 - shift, start.x, start.y])?;
         let centre_rho = x[4].hypot(x[5]);
         // of an odd number of spaces none is opposite another
         let across = if self.teeth().is_multiple_of(2) { 1.0 } else { (0.25 * self.pitch()).cos() };

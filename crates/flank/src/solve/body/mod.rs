@@ -16,7 +16,7 @@ pub(crate) mod space;
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BodyMesh, GearBody, Header, PlacedBody, PlacedFrame};
 use flank_expr::Graph;
-use flank_solver::{BodyPart, ClosedMesh};
+use flank_solver::{Body, BodyPart, ClosedMesh};
 
 use crate::project::choices::{MeshFormat, SolidPart};
 use crate::project::failure::Failure;
@@ -69,6 +69,8 @@ fn built(
                     );
                     NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
                 }));
+                let no_ball = request.ball.filter(|_| numbers.gauges.balls.is_none());
+                not_done.extend(no_ball.map(|ball| gauges::no_ball(&solid.name, &shapes.body, ball)));
                 solids.push(numbers);
                 made.push(shapes);
             }
@@ -135,7 +137,7 @@ fn one(
         )
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
-    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), mesh, faces }))
+    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }))
 }
 
 /// A body as it is written.
@@ -144,6 +146,7 @@ struct Shapes {
     frame: String,
     mesh: ClosedMesh,
     faces: Option<GearBody>,
+    body: Body,
 }
 
 /// Files in which the members of a pair stand as they mesh.
