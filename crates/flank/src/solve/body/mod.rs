@@ -106,6 +106,8 @@ fn one(
 ) -> Result<(SolidNumbers, Shapes), Failure> {
     let space::Space { body, names, off } = space::body(job, solid, session)?;
     let part = match request.part {
+        // from the middle of its space to the middle of the same one a gear of one tooth goes all around
+        _ if body.teeth() == 1 && body.arrangement().is_closed() => BodyPart::Gear,
         SolidPart::Gear => BodyPart::Gear,
         SolidPart::Tooth => BodyPart::Tooth,
         SolidPart::Space => BodyPart::Space,
@@ -144,9 +146,9 @@ fn one(
 struct Shapes {
     name: String,
     frame: String,
+    body: Body,
     mesh: ClosedMesh,
     faces: Option<GearBody>,
-    body: Body,
 }
 
 /// Files in which the members of a pair stand as they mesh.
