@@ -107,6 +107,28 @@ fn worm_gears_and_face_gears() {
     check("specs/bodies/face_gear_pair_body.chain", &[("pinion", 23), ("gear", 108)]);
 }
 
+/// Each section of a worm across its axis is the same one turned, and a space in it is as wide as along the axis by the reduced lead.
+#[test]
+fn worms_of_several_starts() {
+    for starts in [2.0, 3.0, 4.0] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let set = [("starts", &*starts.to_string())];
+        let results = built("specs/bodies/worm_and_wheel_body.chain", &set, folder.path());
+        assert!(results[0].is_complete(), "{:?}", results[0].not_done());
+        let (module, radius, slope) = (4.0, 25.0, f64::to_radians(20.0).tan());
+        let whole = |rho: f64| {
+            (0.5 * std::f64::consts::PI * module - 2.0 * radius * slope) * rho * rho / 2.0
+                + 2.0 * slope * rho.powi(3) / 3.0
+        };
+        let [tip, root, bore] = [radius + 0.8 * module, radius - module, 0.5 * (radius - module)];
+        let section = std::f64::consts::PI * (tip * tip - bore * bore) - 2.0 / module * (whole(tip) - whole(root));
+        let end = std::f64::consts::PI * module * ((300.0 + 500.0 / starts) / 360.0 * starts - 0.5);
+        let (worm, exact) = (&results[0].solids[0], 2.0 * end * section);
+        assert_eq!((worm.name.as_str(), f64::from(worm.teeth)), ("worm", starts));
+        assert!((worm.volume_mm3 / exact - 1.0).abs() < 1e-8, "{starts} starts: {} {exact}", worm.volume_mm3);
+    }
+}
+
 /// Bars have no bore; what their volume is, their specs expect in closed form.
 #[test]
 fn racks() {

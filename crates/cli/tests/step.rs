@@ -138,6 +138,56 @@ fn opencascade_finds_one_closed_body_of_each_part() {
     }
 }
 
+/// Ends of a blank that are spheres, parts of tori, also of such as cross their axis, and the sides of these: as large as flank says.
+#[test]
+fn opencascade_finds_the_arcs_of_a_blank() {
+    let out = folder("step-arcs");
+    let to = out.to_str().expect("a plain path");
+    let line = "front = line(from: [front, tip_radius], to: [front, reference_radius / 2])";
+    let bore = "from: [front, reference_radius / 2]";
+    let whole =
+        self_contained(&["machines/rack_generating", "tools/rack", "hobbing/spur_gear", "bodies/spur_gear_body"]);
+    assert!(whole.contains(line));
+    // where the arc ends along the axis, and its radius: the tip is at 39.6 mm from the axis and 10 mm before the middle, the bore at 18 mm
+    let arcs = [
+        ("30 mm - sqrt(hypot(39.6 mm, 40 mm)^2 - (18 mm)^2)", "hypot(39.6 mm, 40 mm)", "SPHERICAL_SURFACE", "gear"),
+        ("front", "15 mm", "=TOROIDAL_SURFACE", "gear"),
+        ("front", "-15 mm", "=TOROIDAL_SURFACE", "gear"),
+        ("front", "-15 mm", "=TOROIDAL_SURFACE", "tooth"),
+        ("front", "60 mm", "DEGENERATE_TOROIDAL_SURFACE", "gear"),
+        ("front", "60 mm", "DEGENERATE_TOROIDAL_SURFACE", "space"),
+        ("7.5 mm", "-60 mm", "DEGENERATE_TOROIDAL_SURFACE", "gear"),
+    ];
+    let python = reader();
+    for (k, (end, radius, kind, part)) in arcs.into_iter().enumerate() {
+        let arc =
+            format!("front = arc(from: [front, tip_radius], to: [{end}, reference_radius / 2], radius: {radius})");
+        let spec = whole.replace(line, &arc).replace(bore, &format!("from: [{end}, reference_radius / 2]"));
+        let spec = written(&out, &format!("arc{k}.chain"), &spec);
+        let run = flank(&["solve", &spec, "--solid", part, "--step", "--out", to, "--json"]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let built: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let file = out.join("spur_gear_body.step");
+        let written = std::fs::read_to_string(&file).expect("written");
+        assert!(written.contains(kind), "{radius}: a {kind}");
+        let Some(python) = &python else { continue };
+        let run = Command::new(python)
+            .args([top().join("crates/cli/tests/readers/solid.py"), file])
+            .output()
+            .expect("it has just been run");
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let count = |key: &str| found[key].as_i64().expect("a count");
+        assert_eq!((count("solids"), count("shapes"), count("open_edges")), (1, 1, 0), "{end} {radius}: {found}");
+        let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
+        let body = &built["solids"][0];
+        let share = if part == "gear" { 1.0 } else { number(body, "teeth") };
+        let off = number(&found, "volume") * share / number(body, "volume_mm3") - 1.0;
+        // OpenCASCADE itself integrates to some 1e-7
+        assert!(off.abs() < 3e-7, "{end} {radius} {part} {off:e}: {found}");
+    }
+}
+
 #[test]
 fn the_head_and_the_report_say_how_far_the_faces_are_off() {
     let out = folder("step-told");

@@ -82,7 +82,7 @@ pub use solid::bricks::counts::BrickCounts;
 pub use solid::bricks::quality::BrickQuality;
 pub use solid::bricks::{BrickFaces, BrickMesh, BrickOrder, BrickSide};
 pub use solid::chart::Chart;
-pub use solid::gauge::{BallGauge, Span, Thickness};
+pub use solid::gauge::{BallGauge, Chord, Span, Thickness};
 pub use solid::mass::MassProperties;
 pub use solid::mesh::{BodyPart, ClosedMesh};
 pub use solid::section::Fineness;

@@ -2,7 +2,7 @@
 
 use super::real;
 use super::shell::{Edge, Shell};
-use super::solid::{GearRun, TurnedSegment};
+use super::solid::{GearRun, LEAST_UNCERTAINTY, TurnedSegment};
 use crate::files::error::WriteError;
 use crate::vector::Vector;
 
@@ -38,8 +38,8 @@ impl Shell<'_, '_, '_> {
         let radius = out[0].hypot(out[1]);
         let turn = (out[0] * to[1] - out[1] * to[0]).signum();
         let [outwards, on] = run.directions(way);
-        // z by rho is minus the direction of the way
-        let axis = on.map(|x| -turn * x);
+        // from z to rho is a turn about the direction of the way
+        let axis = on.map(|x| turn * x);
         let reference = [0, 1, 2].map(|k| (outwards[k] * out[1] + if k == 2 { out[0] } else { 0.0 }) / radius);
         let place = self.part.placement(run.at(center, way), axis, reference)?;
         let circle = self.part.add(&format!("CIRCLE('',#{place},{})", real(radius)))?;
@@ -57,17 +57,7 @@ impl Shell<'_, '_, '_> {
         let reference = [seam.cos(), seam.sin(), 0.0];
         let on_axis = |z: f64| [0.0, 0.0, z];
         if let Some(center) = segment.center {
-            let out = [from[0] - center[0], from[1] - center[1]];
-            let radius = real(out[0].hypot(out[1]));
-            let place = self.part.placement(on_axis(center[0]), up, reference)?;
-            // an arc that turns left bulges out of the material
-            let is_outward = out[0] * (to[1] - center[1]) - out[1] * (to[0] - center[0]) > 0.0;
-            let surface = if center[1] == 0.0 {
-                format!("SPHERICAL_SURFACE('',#{place},{radius})")
-            } else {
-                format!("TOROIDAL_SURFACE('',#{place},{},{radius})", real(center[1]))
-            };
-            return Ok((self.part.add(&surface)?, is_outward));
+            return self.turned_arc(segment, center, reference);
         }
         // outside is on the right
         if is_plane(segment) {
@@ -84,6 +74,33 @@ impl Shell<'_, '_, '_> {
         let half = (drho / dz).abs().atan();
         let cone = format!("CONICAL_SURFACE('',#{place},{},{})", real(from[1]), real(half));
         Ok((self.part.add(&cone)?, dz < 0.0))
+    }
+
+    /// The sphere or the torus that an arc passes over.
+    fn turned_arc(
+        &mut self,
+        segment: &TurnedSegment,
+        [z, rho]: [f64; 2],
+        reference: Vector,
+    ) -> Result<(usize, bool), WriteError> {
+        let [out, to] = [segment.from, segment.to].map(|end| [end[0] - z, end[1] - rho]);
+        let (major, minor) = (rho.abs(), out[0].hypot(out[1]));
+        // an arc that turns left bulges out of the material
+        let is_outward = out[0] * to[1] - out[1] * to[0] > 0.0;
+        let place = self.part.placement([0.0, 0.0, z], [0.0, 0.0, 1.0], reference)?;
+        // readers take points for one that are farther apart than sphere and torus
+        if major < LEAST_UNCERTAINTY {
+            return Ok((self.part.add(&format!("SPHERICAL_SURFACE('',#{place},{})", real(minor)))?, is_outward));
+        }
+        let radii = format!("#{place},{},{}", real(major), real(minor));
+        if minor < major {
+            return Ok((self.part.add(&format!("TOROIDAL_SURFACE('',{radii})"))?, is_outward));
+        }
+        // a torus that crosses the axis: outside the arc's centre lies on its side of that, inside beyond it, where the normal is turned
+        let is_outer = rho > 0.0;
+        let side = if is_outer { ".T." } else { ".F." };
+        let surface = self.part.add(&format!("DEGENERATE_TOROIDAL_SURFACE('',{radii},{side})"))?;
+        Ok((surface, is_outward == is_outer))
     }
 
     /// The plane or the cylinder along y over a segment.

@@ -182,7 +182,7 @@ struct BodyProduct {
 }
 
 /// What readers take for one point at the least, mm.
-const LEAST_UNCERTAINTY: f64 = 1e-7;
+pub(super) const LEAST_UNCERTAINTY: f64 = 1e-7;
 
 impl DataSection<'_> {
     fn product_of_body(&mut self, body: &GearBody) -> Result<BodyProduct, WriteError> {

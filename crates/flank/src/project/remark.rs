@@ -67,6 +67,8 @@ pub enum NotDoneKind {
     NoBody,
     /// A body is not cut into bricks.
     NoBricks,
+    /// Balls of the size that was asked for measure no gear.
+    NoBall,
     /// A cutter cannot mill a surface as it should.
     NotMilled,
     /// A cutter cuts too deep.

@@ -90,8 +90,8 @@ fn thickness(name: &str, gauges: &GaugeNumbers) -> Block {
     let place = if gauges.bar.is_some() { "x, mm" } else { "diameter, mm" };
     let columns = [place, "along the circle, mm", "chord, mm", "below the tip, mm"].map(Column::numbers);
     let rows = gauges.thickness.iter().map(|of| {
-        let numbers = [of.diameter_mm.or(of.x_mm).unwrap_or_default(), of.arc_mm, of.chord_mm, of.chord_height_mm];
-        numbers.iter().map(|x| fixed(*x, 4)).collect()
+        let numbers = [of.diameter_mm.or(of.x_mm), Some(of.arc_mm), of.chord_mm, of.chord_height_mm];
+        numbers.iter().map(|x| x.map_or_else(String::new, |x| fixed(x, 4))).collect()
     });
     Block::Table(format!("Tooth thickness of {name}, half-way along the teeth"), columns.to_vec(), rows.collect())
 }

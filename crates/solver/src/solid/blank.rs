@@ -34,6 +34,16 @@ impl Blank {
             .collect()
     }
 
+    /// The segment of the rest that is no farther from a place `[z, rho]`, by its number.
+    pub(crate) fn rest_at(&self, place: [f64; 2], near: f64) -> Option<usize> {
+        let off = |segment: &OutlineSegment| {
+            let [z, rho] = segment.nearest(place);
+            (z - place[0]).hypot(rho - place[1])
+        };
+        let at = self.rest().into_iter().position(|segment| off(segment) <= near)?;
+        Some((self.ends[2] + 1 + at) % self.outline.segments().len())
+    }
+
     /// Places `[z, rho]` around the rest, from where the spaces begin to where they end, with so many steps: its corners among them where
     /// there are as many steps as segments.
     pub(crate) fn below(&self, steps: usize) -> Vec<[f64; 2]> {

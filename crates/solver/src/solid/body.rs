@@ -8,7 +8,7 @@ use crate::solid::chart::Chart;
 const LOOKS: usize = 9;
 /// Rows of a land's chart: enough for half a turn.
 const LAND_ROWS: usize = 17;
-/// How far a space may reach beyond its blank, mm: rounding of solved points.
+/// How far a space may reach beyond its blank, and how thin a wall is none, mm: rounding of solved points.
 const ON_BLANK: f64 = 1e-6;
 
 /// A body of revolution with tooth spaces about its z axis, or a bar with tooth spaces along y.
@@ -51,6 +51,13 @@ pub enum BodyFault {
         /// How far beyond it, mm.
         by: f64,
     },
+    /// A space reaches the rest of the blank, and leaves no wall there.
+    NoWall {
+        /// The segment of the outline, as an index.
+        segment: usize,
+        /// Where, `[z, rho]`, mm.
+        place: [f64; 2],
+    },
 }
 
 impl Body {
@@ -62,7 +69,7 @@ impl Body {
     /// If there are neither the charts of one space nor those of all.
     ///
     /// # Errors
-    /// If teeth are pointed below the tip, spaces overlap, or a space goes through the blank.
+    /// If teeth are pointed below the tip, spaces overlap, or a space goes through the blank or leaves no wall of it.
     pub fn new(
         blank: Blank,
         (arrangement, teeth): (Arrangement, u32),
@@ -140,6 +147,9 @@ impl Body {
                 for place in line.iter().map(|[z, rho, _]| [*z, *rho]) {
                     if let Some((segment, by)) = self.blank.outline.beyond(place).filter(|(_, by)| *by > ON_BLANK) {
                         return Err(BodyFault::Through { segment, by });
+                    }
+                    if let Some(segment) = self.blank.rest_at(place, ON_BLANK) {
+                        return Err(BodyFault::NoWall { segment, place });
                     }
                 }
             }

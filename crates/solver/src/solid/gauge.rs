@@ -20,6 +20,9 @@ const ENDS: f64 = 1e-7;
 const STEP: f64 = 1e-6;
 /// The tip of a face gear is this flat: its slope against a plane across the axis.
 const FLAT: f64 = 0.1;
+/// Cosine between the normals of the ground and of a chart that runs out into it: a flank stands on it by more than 30 degrees, steeper than any
+/// pressure angle leaves it.
+const RUNS_OUT: f64 = 0.87;
 /// Singular values below this share of the largest are directions in which a gauge may slide.
 const SLIDES: f64 = 1e-5;
 
@@ -32,10 +35,27 @@ pub struct Thickness {
     pub z: f64,
     /// Along the circle, mm.
     pub arc: f64,
-    /// Straight, as a tooth caliper measures it, mm.
-    pub chord: f64,
-    /// From the tip down to the middle of the chord, mm.
-    pub chord_height: f64,
+    /// As a tooth caliper measures it; nothing where flanks end before it lies square to them.
+    pub chord: Option<Chord>,
+}
+
+/// The shortest straight way from one side of a tooth to the other, between flank lines that are as deep half-way along.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Chord {
+    /// mm
+    pub length: f64,
+    /// From the tip down to its middle, mm.
+    pub height: f64,
+}
+
+/// Places of two flanks that face each other, half-way along: the chart, the share across it, and how far on that is.
+type Facing = [(usize, f64, f64); 2];
+
+/// The shortest way between flank lines.
+struct Shortest {
+    ends: [Vector3<f64>; 2],
+    /// How far along the first line it begins beyond the middle, and the second one before, as a share.
+    shift: f64,
 }
 
 /// The distance of two parallel planes that touch the outer flanks of some teeth.
@@ -108,35 +128,93 @@ impl Body {
             .map(|(k, share)| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))))
     }
 
-    /// The charts that are the flanks: on each side the deepest one.
+    /// The charts that are the flanks: on each side the deepest one above the fillet. A fillet runs out into the ground, and may be deeper than
+    /// what it leaves of a flank that is cut under; a chamfer above the flank is not. Where all run out so, the one at the tip.
     fn flanks(&self) -> [usize; 2] {
-        let depth = |k: &usize| {
-            let [from, to] =
-                [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[*k].at([share, 0.5]))));
-            (to - from).abs()
+        let last = self.charts().len() - 1;
+        let ground = self.normal_at(self.charts().len() / 2, if last.is_multiple_of(2) { 0.5 } else { 0.0 });
+        let flank = |side: Vec<usize>, inner: f64| {
+            let above = side.iter().filter(|k| self.normal_at(**k, inner).dot(&ground) < RUNS_OUT);
+            above.max_by(|a, b| self.height(**a).total_cmp(&self.height(**b))).copied().unwrap_or(side[0])
         };
-        let count = self.charts().len();
-        let deepest = |side: std::ops::Range<usize>| side.max_by(|a, b| depth(a).total_cmp(&depth(b))).unwrap_or(0);
-        [deepest(0..count.div_ceil(2)), deepest(count / 2..count)]
+        [flank((0..=last / 2).collect(), 1.0), flank((last.div_ceil(2)..=last).rev().collect(), 0.0)]
+    }
+
+    /// How much of the teeth's depth a chart has, half-way along, mm.
+    fn height(&self, k: usize) -> f64 {
+        let [from, to] = [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))));
+        (to - from).abs()
+    }
+
+    /// The normal at a share across a chart, half-way along: along the axis, away from it, and around it.
+    fn normal_at(&self, k: usize, share: f64) -> Vector3<f64> {
+        let (at, normal) = touched(&self.charts()[k], [share, 0.5]);
+        let out = match self.arrangement {
+            Arrangement::Round => (normal.x * at.x + normal.y * at.y) / at.x.hypot(at.y),
+            Arrangement::Straight { .. } => normal.x,
+        };
+        Vector3::new(normal.z, out, self.arrangement.along(at.into(), normal))
     }
 
     /// The tooth's thickness at a distance from the axis (of a face gear at a z), half-way along; `None` where a flank does not reach there.
     pub fn thickness(&self, depth: f64) -> Option<Thickness> {
-        let place = |k: usize| Some(self.arrangement.place(self.charts()[k].at([self.on_flank(k, depth)?, 0.5])));
+        let share = |k: usize| Some((k, self.on_flank(k, depth)?));
         // flank, or chamfer beside it
         let count = self.charts().len();
-        let ([z, rho, low], [_, _, high]) =
-            ((0..count.div_ceil(2)).find_map(place)?, (count / 2..count).rev().find_map(place)?);
-        let way = self.pitch() - (self.arrangement.near(high, low + 0.5 * self.pitch()) - low);
+        let low = (0..count.div_ceil(2)).find_map(share)?;
+        let high = (count / 2..count).rev().find_map(share)?;
+        let [[z, rho, from], [_, _, to]] =
+            [low, high].map(|(k, share)| self.arrangement.place(self.charts()[k].at([share, 0.5])));
+        let way = self.pitch() - (self.arrangement.near(to, from + 0.5 * self.pitch()) - from);
         let arc = self.arrangement.arc(rho) * way;
-        let (chord, rise) = match self.arrangement {
-            Arrangement::Round => (2.0 * rho * (0.5 * way).sin(), rho * (1.0 - (0.5 * way).cos())),
-            Arrangement::Straight { .. } => (arc, 0.0),
+        let chord = self.shortest([(high.0, high.1, 0.0), (low.0, low.1, self.pitch())], arc).map(|way| {
+            let [p, q] = way.ends;
+            let middle = self.depth(self.arrangement.place((0.5 * (p + q)).into()));
+            let tip = self.tip_and_root()[0];
+            Chord { length: (q - p).norm(), height: if self.is_external() { tip - middle } else { middle - tip } }
+        });
+        Some(Thickness { rho, z, arc, chord })
+    }
+
+    /// How wide the space is at a distance from the axis, straight and square to its flanks, mm.
+    pub fn space_width(&self, depth: f64) -> Option<f64> {
+        let way = self.across_space(self.flanks().map(|k| Some((k, self.on_flank(k, depth)?, 0.0))))?;
+        Some((way.ends[1] - way.ends[0]).norm())
+    }
+
+    /// The shortest way across the first space, from the lower flank to the upper one.
+    fn across_space(&self, [low, high]: [Option<(usize, f64, f64)>; 2]) -> Option<Shortest> {
+        let facing = [low?, high?];
+        let [[_, rho, from], [_, _, to]] =
+            facing.map(|(k, share, _)| self.arrangement.place(self.charts()[k].at([share, 0.5])));
+        let way = self.arrangement.near(to, from + 0.5 * self.pitch()) - from;
+        self.shortest(facing, self.arrangement.arc(rho) * way)
+    }
+
+    /// The shortest way between the flank lines through two places that are an arc apart, its middle half-way along: square to both. Rows of charts
+    /// are flank lines. The first guess is what it would be in a plane.
+    fn shortest(&self, facing: Facing, arc: f64) -> Option<Shortest> {
+        let line = |(chart, across, on): (usize, f64, f64), along: f64| {
+            let [at, _, by_along] = self.charts()[chart].frame([across, along]);
+            [self.arrangement.moved(at, on), self.arrangement.turned(by_along, on)].map(Vector3::from)
         };
-        let tip = self.tip_and_root()[0];
-        let middle = if self.is_face_gear() { z } else { rho - rise };
-        let chord_height = if self.is_external() { tip - middle } else { middle - tip };
-        Some(Thickness { rho, z, arc, chord, chord_height })
+        let both = |shift: f64| [line(facing[0], 0.5 + shift), line(facing[1], 0.5 - shift)];
+        let slope = |shift: f64| {
+            let [[p, by_p], [q, by_q]] = both(shift);
+            (p - q).dot(&(by_p + by_q))
+        };
+        let [[middle, by_along], _] = both(0.0);
+        let around = self.arrangement.along(middle.into(), by_along);
+        let mut shift = (0.5 * around * arc / by_along.norm_squared()).clamp(-0.5, 0.5);
+        for _ in 0..MOST_STEPS {
+            let step = slope(shift) * 2.0 * STEP / (slope(shift + STEP) - slope(shift - STEP));
+            shift = (shift - step).clamp(-0.5, 0.5);
+            if step.abs() < LAST_STEP {
+                let ends = both(shift).map(|[at, _]| at);
+                return (shift.abs() < 0.5).then_some(Shortest { ends, shift });
+            }
+        }
+        None
     }
 
     /// The share across a chart at which it has a depth, half-way along.
@@ -183,11 +261,17 @@ impl Body {
         })
     }
 
-    /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends.
+    /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends, and of a single space,
+    /// which has none opposite.
     pub fn ball(&self, diameter: f64) -> Option<BallGauge> {
-        let [low, high] = self.flanks().map(|k| &self.charts()[k]);
+        if self.teeth() < 2 {
+            return None;
+        }
+        let flanks = self.flanks();
+        let shift = self.across_space(flanks.map(|k| Some((k, 0.5, 0.0)))).map_or(0.0, |way| way.shift);
+        let [low, high] = flanks.map(|k| &self.charts()[k]);
         let z = low.at([0.5; 2])[2];
-        let starts = [touched(low, [0.5; 2]), touched(high, [0.5; 2])];
+        let starts = [touched(low, [0.5, 0.5 + shift]), touched(high, [0.5, 0.5 - shift])];
         let start = 0.5 * (starts[0].0 + starts[1].0 + 0.5 * diameter * (starts[0].1 + starts[1].1));
         let residual = |x: &[f64]| {
             let centre = Vector3::new(x[4], x[5], z);
@@ -198,7 +282,7 @@ impl Body {
             let (a, b) = (off(low, [x[0], x[1]]), off(high, [x[2], x[3]]));
             vec![a.x, a.y, a.z, b.x, b.y, b.z]
         };
-        let x = solved(residual, vec![0.5, 0.5, 0.5, 0.5, start.x, start.y])?;
+        let x = solved(residual, vec![0.5, 0.5 + shift, 0.5, 0.5 - shift, start.x, start.y])?;
         let centre_rho = x[4].hypot(x[5]);
         // of an odd number of spaces none is opposite another
         let across = if self.teeth().is_multiple_of(2) { 1.0 } else { (0.25 * self.pitch()).cos() };

@@ -4,12 +4,11 @@ use std::collections::BTreeSet;
 
 use nalgebra::Vector3;
 
+use crate::contact::OutlineSegment;
 use crate::solid::arrangement::{Arrangement, Polar};
 use crate::solid::body::{Body, shifted};
 use crate::solid::section::{Fineness, Layout};
 
-/// Cells along an arc of the rest of the outline.
-const ALONG_ARC: usize = 16;
 /// Cells of a chart in one direction at the most.
 const MOST_CELLS: usize = 256;
 /// A body whose beginning and end are turned by less than this against each other is straight.
@@ -97,14 +96,14 @@ impl Cells {
 
 /// Where the rest of the outline is cut into cells: its places `[z, rho]` from the end of the spaces round to their beginning, each
 /// with its share of the way.
-fn around_rest(body: &Body, twist: f64, along: usize) -> Vec<([f64; 2], f64)> {
+fn around_rest(body: &Body, twist: f64, fineness: &Fineness) -> Vec<([f64; 2], f64)> {
     let rest = body.blank().rest();
     let whole: f64 = rest.iter().map(|segment| segment.length()).sum();
     let mut before = 0.0;
     let mut places = Vec::new();
     for segment in rest {
-        let cells = if segment.center.is_some() { ALONG_ARC } else { 1 };
-        let cells = if twist.abs() > STRAIGHT { cells.max(along) } else { cells };
+        let cells = if segment.center.is_some() { fineness.arc } else { 1 };
+        let cells = if twist.abs() > STRAIGHT { cells.max(fineness.along) } else { cells };
         let length = segment.length();
         places.extend((0..cells).map(|k| {
             let share = k as f64 / cells as f64;
@@ -142,11 +141,20 @@ impl Body {
     }
 
     /// So finely that the middles of cells' sides are no farther than `tolerance` (mm) from the exact surfaces.
-    pub fn fineness(&self, tolerance: f64) -> Fineness {
+    pub fn fineness(&self, part: BodyPart, tolerance: f64) -> Fineness {
         let mut charts = vec![2; self.charts().len()];
         let rest = self.blank().rest();
-        let has_arc = rest.iter().any(|segment| segment.center.is_some());
-        let mut along = if has_arc { ALONG_ARC * rest.len() } else { 2 * rest.len() }.next_power_of_two();
+        // diagonals are off along the angle and along the arc
+        let arcs = rest.iter().map(|segment| arc_cells(segment, 0.5 * tolerance)).collect::<Vec<usize>>();
+        let arc = arcs.iter().copied().max().unwrap_or(1);
+        let mut along = (2 * rest.len()).next_power_of_two();
+        if !(part == BodyPart::Gear && self.arrangement().is_closed()) {
+            // sides of a part have as many cells below as along, and each segment its share
+            let whole: f64 = rest.iter().map(|segment| segment.length()).sum();
+            let of_all = |(segment, cells): (&&OutlineSegment, &usize)| *cells as f64 * whole / segment.length();
+            let needed = rest.iter().zip(&arcs).filter(|(_, cells)| **cells > 1).map(of_all).fold(0.0, f64::max);
+            along = along.max(needed.ceil() as usize).next_power_of_two().min(MOST_CELLS);
+        }
         for (k, chart) in self.spaces.iter().flat_map(|charts| charts.iter().enumerate()) {
             let count = &mut charts[k];
             let doubled = |cells: usize| (0..=2 * cells).map(|k| k as f64 / (2 * cells) as f64).collect::<Vec<f64>>();
@@ -173,51 +181,96 @@ impl Body {
             Arrangement::Round => (angle * (rho / (8.0 * tolerance)).sqrt()).ceil() as usize,
             Arrangement::Straight { .. } => 1,
         };
-        let widest = rest.iter().flat_map(|segment| [segment.from[1], segment.to[1]]).fold(0.0, f64::max);
-        let of_charts = Layout::new(&Fineness { charts: charts.clone(), tooth: 0, rim: 1, along }).width();
+        let widest =
+            rest.iter().flat_map(|segment| [0.0, 0.5, 1.0].map(|share| segment.at(share)[1])).fold(0.0, f64::max);
+        let of_charts = Layout::new(&Fineness { charts: charts.clone(), tooth: 0, rim: 1, along, arc }).width();
         // twice as many, since they are not even
         let below = (2 * steps(widest, self.pitch())).saturating_sub(of_charts);
         let tooth = steps(tip, land).max(below).max(2).next_multiple_of(2);
-        let mut fineness = Fineness { charts, tooth, rim: 1, along };
+        self.fine_ends(Fineness { charts, tooth, rim: 1, along, arc }, tolerance)
+    }
+
+    /// Finer until curved ends are near enough.
+    fn fine_ends(&self, mut fineness: Fineness, tolerance: f64) -> Fineness {
         loop {
-            let [around, down] = self.sag_of_ends(&fineness);
-            if around > tolerance && fineness.tooth < MOST_CELLS {
+            let EndSag { around, in_teeth, below, diagonal } = self.sag_of_ends(&fineness);
+            let down = in_teeth.max(below);
+            if around.max(down).max(diagonal) <= tolerance {
+                return fineness;
+            }
+            // a diagonal is as far off as sides of both directions together
+            let is_around = around > tolerance || (down <= tolerance && around >= down);
+            let finest_chart = fineness.charts.iter().copied().max().unwrap_or_default();
+            if is_around && fineness.tooth < MOST_CELLS {
                 fineness.tooth *= 2;
-            } else if down > tolerance && fineness.rim < MOST_CELLS {
+            } else if below >= in_teeth && fineness.rim < MOST_CELLS {
                 fineness.rim *= 2;
+            } else if below < in_teeth && finest_chart < MOST_CELLS {
+                fineness.charts.iter_mut().for_each(|cells| *cells *= 2);
             } else {
                 return fineness;
             }
         }
     }
 
-    /// How far the sides of cells on curved ends lie off these in their middles, mm: those along the angle, and those across.
-    fn sag_of_ends(&self, fineness: &Fineness) -> [f64; 2] {
+    /// How far cells on curved ends lie off these.
+    fn sag_of_ends(&self, fineness: &Fineness) -> EndSag {
         let (across, _) = Body::shares_of(fineness);
         let layout = Layout::new(fineness);
         let [lines, next] = self.tooth_lines(0, &across, &[0.0, 0.5, 1.0]);
         let arrangement = self.arrangement;
         let shares = layout.shares(&layout.top([&lines[1], &next[1]]), arrangement);
         let [begin, _, end] = self.blank().bounds();
-        let mut most = [0.0_f64; 2];
+        let mut most = EndSag::default();
         for (j, segment, below) in [(0, begin, begin.from), (2, end, end.to)] {
             if segment.center.is_none() && segment.from[0] == segment.to[0] {
                 continue;
             }
             let places = layout.places([&lines[j], &next[j]], below, &shares);
             let sag = |a: usize, b: usize| {
-                let [p, q] = [places[a], places[b]];
-                let middle = [0, 1, 2].map(|k| 0.5 * (p[k] + q[k]));
+                let [p, q] = [places[a], places[b]].map(|place| on_end(segment, place));
+                let middle = on_end(segment, [0, 1, 2].map(|k| 0.5 * (p[k] + q[k])));
                 let [p, q, middle] = [p, q, middle].map(|place| Vector3::from(arrangement.position(place)));
                 (0.5 * (p + q) - middle).norm()
             };
             for [a, b, c, d] in layout.cells() {
-                most[0] = most[0].max(sag(a, b)).max(sag(d, c));
-                most[1] = most[1].max(sag(a, d)).max(sag(b, c));
+                most.around = most.around.max(sag(a, b)).max(sag(d, c));
+                let down = if layout.is_in_rim(a) { &mut most.below } else { &mut most.in_teeth };
+                *down = down.max(sag(a, d)).max(sag(b, c));
+                if segment.center.is_some() {
+                    most.diagonal = most.diagonal.max(sag(a, c)).max(sag(b, d));
+                }
             }
         }
         most
     }
+}
+
+/// How far the sides of cells on curved ends lie off these in their middles, mm.
+#[derive(Default)]
+struct EndSag {
+    /// Along the angle.
+    around: f64,
+    /// From the tip to where the block below begins.
+    in_teeth: f64,
+    /// From there to the rest of the outline.
+    below: f64,
+    /// Of cells on arcs.
+    diagonal: f64,
+}
+
+/// A place of an end: what lies between places of an arc is brought to it.
+fn on_end(segment: &OutlineSegment, place: Polar) -> Polar {
+    let [z, rho] = if segment.center.is_some() { segment.nearest([place[0], place[1]]) } else { [place[0], place[1]] };
+    [z, rho, place[2]]
+}
+
+/// Cells along a segment whose middles are no farther from it, mm.
+fn arc_cells(segment: &OutlineSegment, tolerance: f64) -> usize {
+    let Some(center) = segment.center else { return 1 };
+    let radius = (segment.from[0] - center[0]).hypot(segment.from[1] - center[1]);
+    let most = 2.0 * (1.0 - tolerance / radius).max(0.0).acos();
+    ((segment.length() / radius / most).ceil() as usize).max(1)
 }
 
 /// How far points between two others lie off their chord, in one direction of a lattice of doubled fineness.
@@ -255,16 +308,11 @@ impl Tooth {
             (0..=last).map(|j| layout.places([&lines[j], &next[j]], below[j], &shares)).collect();
         let [begin, _, end] = body.blank().bounds();
         for (nodes, segment) in [(0, begin), (last, end)] {
-            if segment.center.is_some() {
-                places[nodes].iter_mut().for_each(|place| {
-                    let [z, rho] = segment.nearest([place[0], place[1]]);
-                    *place = [z, rho, place[2]];
-                });
-            }
+            places[nodes].iter_mut().for_each(|place| *place = on_end(segment, *place));
         }
         let middles = |j: usize| [lines[j][layout.middle][2], next[j][layout.middle][2]];
         let (from, to) = (middles(last), middles(0));
-        let rest = around_rest(body, to[0] - from[0], last).into_iter().map(|([z, rho], share)| {
+        let rest = around_rest(body, to[0] - from[0], fineness).into_iter().map(|([z, rho], share)| {
             let [start, end] = [0, 1].map(|k| (1.0 - share) * from[k] + share * to[k]);
             shares.iter().map(|along| [z, rho, start + along * (end - start)]).collect()
         });

@@ -17,6 +17,8 @@ pub struct Fineness {
     pub rim: usize,
     /// Cells along the tooth.
     pub along: usize,
+    /// Cells along each arc of the rest of the outline, where that goes round in rings.
+    pub arc: usize,
 }
 
 /// The nodes and cells of a section of a tooth; where they lie, a line across says.
@@ -90,6 +92,11 @@ impl Layout {
             return node % (self.tooth + 1) < self.tooth / 2;
         }
         (node - in_tooth) % (self.width() + 1) < self.width() / 2
+    }
+
+    /// Whether a node lies in the block below the tooth.
+    pub(crate) fn is_in_rim(&self, node: usize) -> bool {
+        node >= self.in_rim(0, 0)
     }
 
     /// Whether a node lies on the rest of the outline.

@@ -120,7 +120,7 @@ impl<'j, 'g> Borders<'j, 'g> {
     ) -> Option<Result<Vec<f64>, Failure>> {
         let (joint, own) = self.joint(k, side)?;
         let values = joint.values(own, self.unknowns[k], blank, shares);
-        Some(values.ok_or_else(|| lost(solid, joint.pieces.each_ref())))
+        Some(values.ok_or_else(|| lost(solid, joint.pieces.each_ref(), blank)))
     }
 }
 
@@ -179,7 +179,7 @@ fn shared<'j, 'g>(solid: &Solid, pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> 
             told(solid, pieces),
             units::scientific(gap, 2)
         )),
-        None => lost(solid, pieces),
+        None => lost(solid, pieces, blank),
     })
 }
 
@@ -234,8 +234,13 @@ fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Op
 }
 
 /// Neighbours whose common line is not found.
-fn lost(solid: &Solid, pieces: [&Piece<'_, '_>; 2]) -> Failure {
-    Failure::from(format!("{} neither end in one line nor meet all along the space", told(solid, pieces)))
+fn lost(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Failure {
+    let ends = |piece: &&Piece<'_, '_>| {
+        let beyond = piece.beyond_ends(blank, &ALONG)?;
+        Some(format!(": points where `{}` ends are {beyond}", piece.surface.name))
+    };
+    let why = pieces.iter().find_map(ends).unwrap_or_default();
+    Failure::from(format!("{} neither end in one line nor meet all along the space{why}", told(solid, pieces)))
 }
 
 fn told(solid: &Solid, [first, second]: [&Piece<'_, '_>; 2]) -> String {

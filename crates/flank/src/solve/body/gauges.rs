@@ -2,6 +2,7 @@
 
 use flank_solver::{Arrangement, BallGauge, Body, Span, Thickness};
 
+use crate::project::remark::{NotDone, NotDoneKind};
 use crate::solve::body::result::{BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
 
 /// Circles from the form diameter to the tip on which the thickness is told.
@@ -27,8 +28,7 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
         let bar = BarNumbers { pitch_mm: pitch, tip_x_mm: tip, root_x_mm: root, form_x_mm: form };
         return GaugeNumbers { thickness, edge_below_tip_mm, bar: Some(bar), ..GaugeNumbers::default() };
     }
-    let [_, outline, _] = body.blank().bounds();
-    let is_cylindrical = outline.center.is_none() && outline.from[1] == outline.to[1];
+    let is_cylindrical = is_cylindrical(body);
     let most = if is_cylindrical { body.teeth() / 2 } else { 0 };
     let diameter = || ball.unwrap_or_else(|| middle_ball(body, circle(CIRCLES / 2)));
     let face = body.is_face_gear().then_some(FaceNumbers { tip_z_mm: tip, root_z_mm: root, form_z_mm: form });
@@ -51,20 +51,37 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
 
 /// About the width of the space where it is touched.
 fn middle_ball(body: &Body, rho: f64) -> f64 {
-    let width = body.thickness(rho).map_or(0.0, |tooth| body.pitch() * rho - tooth.arc);
-    (1.05 * width / BALL_STEP).ceil() * BALL_STEP
+    (1.05 * body.space_width(rho).unwrap_or_default() / BALL_STEP).ceil() * BALL_STEP
+}
+
+/// Whether spans and balls are dimensions of it: its tip is a cylinder.
+fn is_cylindrical(body: &Body) -> bool {
+    let [_, outline, _] = body.blank().bounds();
+    body.arrangement().is_closed() && outline.center.is_none() && outline.from[1] == outline.to[1]
+}
+
+/// Why there is no dimension over balls of the diameter that is asked for.
+pub(crate) fn no_ball(name: &str, body: &Body, ball: f64) -> NotDone {
+    let message = if is_cylindrical(body) && body.distinct() == 1 && body.teeth() > 1 {
+        format!("balls of {ball} mm do not touch both flanks of a space of `{name}` half-way along")
+    } else {
+        format!(
+            "`{name}` has no dimension over balls: only of a gear with several teeth that are alike and a cylinder as its tip there is one"
+        )
+    };
+    NotDone::new(NotDoneKind::NoBall, name, message)
 }
 
 fn thickness_numbers(body: &Body, of: Thickness) -> ThicknessNumbers {
-    let Thickness { rho, z, arc, chord, chord_height } = of;
+    let Thickness { rho, z, arc, chord } = of;
     let is_round = body.arrangement().is_closed();
     ThicknessNumbers {
         diameter_mm: is_round.then_some(2.0 * rho),
         x_mm: (!is_round).then_some(rho),
         z_mm: z,
         arc_mm: arc,
-        chord_mm: chord,
-        chord_height_mm: chord_height,
+        chord_mm: chord.map(|chord| chord.length),
+        chord_height_mm: chord.map(|chord| chord.height),
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) mod space;
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BodyMesh, GearBody, Header, PlacedBody, PlacedFrame};
 use flank_expr::Graph;
-use flank_solver::{BodyPart, ClosedMesh};
+use flank_solver::{Body, BodyPart, ClosedMesh};
 
 use crate::project::choices::{MeshFormat, SolidPart};
 use crate::project::failure::Failure;
@@ -69,6 +69,8 @@ fn built(
                     );
                     NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
                 }));
+                let no_ball = request.ball.filter(|_| numbers.gauges.balls.is_none());
+                not_done.extend(no_ball.map(|ball| gauges::no_ball(&solid.name, &shapes.body, ball)));
                 solids.push(numbers);
                 made.push(shapes);
             }
@@ -104,11 +106,13 @@ fn one(
 ) -> Result<(SolidNumbers, Shapes), Failure> {
     let space::Space { body, names, off } = space::body(job, solid, session)?;
     let part = match request.part {
+        // from the middle of its space to the middle of the same one a gear of one tooth goes all around
+        _ if body.teeth() == 1 && body.arrangement().is_closed() => BodyPart::Gear,
         SolidPart::Gear => BodyPart::Gear,
         SolidPart::Tooth => BodyPart::Tooth,
         SolidPart::Space => BodyPart::Space,
     };
-    let mesh = body.mesh(part, &body.fineness(request.deviation));
+    let mesh = body.mesh(part, &body.fineness(part, request.deviation));
     let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
     let written =
         BodyMesh { name: &solid.name, frame: &solid.frame, vertices: &mesh.vertices, triangles: &mesh.triangles };
@@ -135,13 +139,14 @@ fn one(
         )
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
-    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), mesh, faces }))
+    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }))
 }
 
 /// A body as it is written.
 struct Shapes {
     name: String,
     frame: String,
+    body: Body,
     mesh: ClosedMesh,
     faces: Option<GearBody>,
 }

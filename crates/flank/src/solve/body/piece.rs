@@ -11,6 +11,7 @@ use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, Range, SurfacePoin
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
+use crate::project::units;
 use crate::solve::sampled::{SOLVED, as_solved};
 use crate::solve::surface::{bound, problem};
 
@@ -229,6 +230,29 @@ impl<'j, 'g> Piece<'j, 'g> {
             is_whole.then(|| EndLine { unknown, value, points: positions(&points) })
         };
         [low, high].into_iter().filter(|value| value.is_finite()).filter_map(line).collect()
+    }
+
+    /// What keeps the lines on which its rows end from running all along the space, if that is a range.
+    pub(crate) fn beyond_ends(&self, blank: &Blank, along: &[f64]) -> Option<String> {
+        let unknown = self.across_tool(blank)?;
+        let Range { low, high } = self.bound().ranges()[unknown];
+        let ends = [low, high].into_iter().filter(|value| value.is_finite());
+        ends.map(|value| self.on_line((unknown, value), blank, along)).find_map(|points| self.beyond(&points))
+    }
+
+    /// How far unknowns would have to go beyond their ranges to reach points; nothing where all of them are within.
+    pub(crate) fn beyond(&self, points: &SurfacePoints) -> Option<String> {
+        let unknowns = &self.surface.unknowns;
+        let mut most = vec![0.0_f64; unknowns.len()];
+        for outcome in (0..points.len()).map(|k| points.outcome(k)) {
+            if let Outcome::Outside { unknown, by } = outcome {
+                most[unknown] = most[unknown].max(by);
+            }
+        }
+        let each = unknowns.iter().zip(most).filter(|(_, by)| *by > 0.0);
+        let each: Vec<String> =
+            each.map(|(of, by)| format!("`{}` by {}", of.name, units::text(of.dimension, by, 4))).collect();
+        (!each.is_empty()).then(|| format!("beyond ranges, {}", each.join(", ")))
     }
 
     /// The values of an unknown at points of a line along the space; `None` where one is no point of the surface.

@@ -136,10 +136,11 @@ pub struct ThicknessNumbers {
     pub z_mm: f64,
     /// Along the circle.
     pub arc_mm: f64,
-    /// Straight, as a tooth caliper measures it.
-    pub chord_mm: f64,
-    /// From the tip down to the middle of the chord.
-    pub chord_height_mm: f64,
+    /// As a tooth caliper measures it: the shortest way between the flank lines on both sides that lie on this circle half-way along the teeth.
+    /// It is square to them, so of helical gears and worms it is the normal chord. Null where flanks end before.
+    pub chord_mm: Option<f64>,
+    /// From the tip down to the middle of the chord, which may lie above the tip of an internal gear.
+    pub chord_height_mm: Option<f64>,
 }
 
 /// The width over teeth.
@@ -259,19 +260,17 @@ impl fmt::Display for GaugeNumbers {
             }
         }
         if let Some(below) = self.edge_below_tip_mm {
-            writeln!(f, "  edge     teeth are pointed: they end {below:.4} mm below the tip of the blank")?;
+            writeln!(f, "  edge     teeth are pointed: they end {} of the blank", beside_tip(below))?;
         }
         for of in &self.thickness {
             let ThicknessNumbers { diameter_mm, x_mm, arc_mm, chord_mm, chord_height_mm, .. } = of;
-            let Some(diameter_mm) = diameter_mm else {
-                let x = x_mm.map(rounded).unwrap_or_default();
-                writeln!(f, "  tooth    {arc_mm:.4} mm thick at x {x:.3} mm, {chord_height_mm:.4} mm below the tip")?;
-                continue;
+            let place = match diameter_mm {
+                Some(diameter) => format!("{diameter:.3} mm"),
+                None => format!("x {:.3} mm", x_mm.map(rounded).unwrap_or_default()),
             };
-            writeln!(
-                f,
-                "  tooth    {arc_mm:.4} mm thick at {diameter_mm:.3} mm, chord {chord_mm:.4} mm {chord_height_mm:.4} mm below the tip"
-            )?;
+            let height = chord_height_mm.map(beside_tip).unwrap_or_default();
+            let chord = chord_mm.map(|chord| format!(", chord {chord:.4} mm {height}")).unwrap_or_default();
+            writeln!(f, "  tooth    {arc_mm:.4} mm thick at {place}{chord}")?;
         }
         for SpanNumbers { teeth, width_mm, diameters_mm: [a, b] } in &self.spans {
             writeln!(f, "  span     {width_mm:.4} mm over {teeth} teeth, touching at {a:.3} mm and {b:.3} mm")?;
@@ -283,6 +282,15 @@ impl fmt::Display for GaugeNumbers {
             )?;
         }
         Ok(())
+    }
+}
+
+/// Where a height below the tip is, by four digits.
+fn beside_tip(below: f64) -> String {
+    match below {
+        _ if below.abs() < 5e-5 => "at the tip".to_string(),
+        _ if below < 0.0 => format!("{:.4} mm above the tip", -below),
+        _ => format!("{below:.4} mm below the tip"),
     }
 }
 

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Job, Solid};
-use flank_solver::{Arrangement, Body, BodySheet, Fineness, Outcome, SheetFace};
+use flank_solver::{Arrangement, Body, BodyPart, BodySheet, Fineness, Outcome, SheetFace};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
@@ -130,7 +130,7 @@ fn whole(body: &Body) -> Fineness {
         Arrangement::Round => 2.0 * widest(body),
         Arrangement::Straight { pitch } => pitch * f64::from(body.teeth()),
     };
-    let fineness = body.fineness(WHOLE * size);
+    let fineness = body.fineness(BodyPart::Gear, WHOLE * size);
     Fineness { tooth: 2, rim: 1, along: fineness.along.min(MOST_ALONG), ..fineness }
 }
 
@@ -141,7 +141,7 @@ fn large(body: &Body) -> Fineness {
         Arrangement::Straight { pitch } => pitch,
     };
     let size = (f64::from(SOME) * width).max(tip.length());
-    Fineness { tooth: 4, rim: 2, ..body.fineness(LARGE * size) }
+    Fineness { tooth: 4, rim: 2, ..body.fineness(BodyPart::Tooth, LARGE * size) }
 }
 
 /// The sampled points of the surfaces of a space.

@@ -170,7 +170,7 @@ fn chart(
         (point.unknowns[unknown] - middle).abs() / width + (piece.along_of(blank, point) - 0.5).abs()
     };
     let points = piece.solved(piece.across(unknown, blank), (&targets, [rows, columns]), far);
-    all_solved(solid, piece, &points)?;
+    all_solved(solid, (piece, "its neighbours and the tip"), &points)?;
     Ok(Chart::through(positions(&points), [rows, columns]))
 }
 
@@ -188,24 +188,28 @@ fn at_tip(
         (z - middle[0]).hypot(rho - middle[1])
     };
     let points = piece.solved(piece.section(), (&targets, [1, shares.len()]), far);
-    all_solved(solid, piece, &points)?;
+    let tip = format!(
+        "`{}` of the outline, where the first surface of a space begins and the last one ends,",
+        blank.bounds()[1].name
+    );
+    all_solved(solid, (piece, &tip), &points)?;
     Ok((0..points.len()).map(|k| points.unknowns(k)[unknown]).collect())
 }
 
 /// # Errors
-/// With the first point that is not solved.
-fn all_solved(solid: &Solid, piece: &Piece<'_, '_>, points: &SurfacePoints) -> Result<(), Failure> {
+/// With the first point that is not solved, of those with which a surface reaches what is said.
+fn all_solved(solid: &Solid, (piece, what): (&Piece<'_, '_>, &str), points: &SurfacePoints) -> Result<(), Failure> {
     let open: Vec<usize> = (0..points.len()).filter(|k| points.outcome(*k) != Outcome::Solved).collect();
     let Some(first) = open.first() else { return Ok(()) };
     let outcome = match points.outcome(*first) {
-        Outcome::CutAway(_) => "undercut: the tool cuts them away again",
-        Outcome::Outside { .. } => "beyond the ranges of their unknowns",
-        Outcome::Singular => "singular",
-        Outcome::Ambiguous => "on several branches: its sample needs a `keep`",
-        _ => "not found",
+        Outcome::CutAway(_) => "undercut: the tool cuts them away again".to_string(),
+        Outcome::Outside { .. } => piece.beyond(points).unwrap_or_default(),
+        Outcome::Singular => "singular".to_string(),
+        Outcome::Ambiguous => "on several branches: its sample needs a `keep`".to_string(),
+        _ => "not found".to_string(),
     };
     Err(format!(
-        "`{}` does not reach its neighbours and the tip in the spaces of `{}`: {} of {} points there are {outcome}",
+        "`{}` does not reach {what} in the spaces of `{}`: {} of {} points there are {outcome}",
         piece.surface.name,
         solid.name,
         open.len(),
@@ -230,6 +234,11 @@ fn faulty(solid: &Solid, blank: &Blank, fault: BodyFault) -> Failure {
         BodyFault::Through { segment, by } => format!(
             "the spaces of `{}` go {} mm through `{}` of its outline",
             solid.name, length(by), segments[segment].name
+        ),
+        BodyFault::NoWall { segment, place: [z, rho] } => format!(
+            "the spaces of `{}` reach `{}` of its outline at z {z:.4} mm, {rho:.4} mm from {}: no wall is left between them",
+            solid.name, segments[segment].name,
+            if blank::arrangement(solid).is_closed() { "the axis" } else { "x = 0" }
         ),
     }.into()
 }
