@@ -5,6 +5,8 @@
 mod dexels;
 #[path = "mill/pair.rs"]
 mod pair;
+#[path = "mill/special.rs"]
+mod special;
 mod support;
 
 use std::path::Path;

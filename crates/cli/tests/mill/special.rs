@@ -1,0 +1,41 @@
+//! Leans, surfaces and blocks that are special cases: a ball that touches with its tip, what only rounding misses, what is straight, long blocks.
+
+use super::support::{folder, self_contained, written};
+use super::json;
+
+/// What the jobs need of the library.
+const SPUR_GEAR: [&str; 7] = [
+    "machines/hobbing_6axis",
+    "machines/rack_generating",
+    "tools/rack",
+    "hobbing/spur_gear",
+    "bodies/spur_gear_body",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
+
+/// A job that mills a flank of a spur gear, which is convex across the passes and straight along them.
+fn spur(cutter: &str, milling: &str) -> String {
+    let library = self_contained(&SPUR_GEAR);
+    format!(
+        "{library}\njob milled extends spur_gear_body {{\n machine mill = five_axis_table_table(work_z: 60 mm)\n tool cutter = {cutter}\n \
+         mount cutter on mill.cutter\n mill part of flank_plus with cutter.cutting in mill.work {{\n passes rho: 35 mm .. 39 mm by 13\n \
+         along z: -10 mm .. 10 mm by 5\n{milling}\n }}\n}}\n"
+    )
+}
+
+const BALL: &str = "ball_mill(radius: 1 mm, reach: 40 mm, holder_radius: 8 mm)";
+
+/// A ball has no bottom: upright on the surface, and while it leans from one side to the other, it touches with its tip.
+#[test]
+fn a_ball_touches_with_its_tip() {
+    let out = folder("mill_upright");
+    for lean in ["lead 0 deg\n tilt 0 deg", "lead 2 deg * (z / 10 mm)\n tilt 0 deg"] {
+        let spec = written(&out, "milled.chain", &spur(BALL, lean));
+        let found = json(&spec, &out, &[]);
+        let [least, most] = [0, 1].map(|k| found["effective_radius"][k].as_f64().unwrap());
+        assert!((least - 1.0).abs() < 1e-9 && (most - 1.0).abs() < 1e-9, "{lean}: {least} {most}");
+        assert!(found["map"]["left"][1]["height_um"].as_f64().unwrap() > -1e-6, "{lean}");
+        assert_eq!(found["map"]["untouched"], 0, "{lean}");
+    }
+}
