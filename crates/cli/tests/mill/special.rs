@@ -1,7 +1,7 @@
 //! Leans, surfaces and blocks that are special cases: a ball that touches with its tip, what only rounding misses, what is straight, long blocks.
 
 use super::support::{folder, self_contained, written};
-use super::json;
+use super::{json, mill};
 
 /// What the jobs need of the library.
 const SPUR_GEAR: [&str; 7] = [
@@ -38,4 +38,20 @@ fn a_ball_touches_with_its_tip() {
         assert!(found["map"]["left"][1]["height_um"].as_f64().unwrap() > -1e-6, "{lean}");
         assert_eq!(found["map"]["untouched"], 0, "{lean}");
     }
+}
+
+/// A ball that touches the milled surface stays clear of it by nothing.
+#[test]
+fn a_cutter_is_clear_of_what_it_touches() {
+    let out = folder("mill_own");
+    let milling = |by: &str| format!("lead 0 deg\n tilt 75 deg\n clear of flank_plus by {by} with cutter.whole");
+    let spec = written(&out, "milled.chain", &spur(BALL, &milling("0 mm")));
+    let found = json(&spec, &out, &[]);
+    let least = found["clearances"][0]["least"].as_f64().unwrap();
+    assert!(least.abs() < 1e-10, "{least}");
+    // what is more than rounding is missed as before
+    let spec = written(&out, "milled.chain", &spur(BALL, &milling("0.000001 mm")));
+    let (code, _, told) = mill(&spec, &out, &[]);
+    assert_eq!(code, 3, "{told}");
+    assert!(told.contains("0.000001 mm are wanted"), "{told}");
 }
