@@ -13,6 +13,18 @@ const SPUR_GEAR: [&str; 7] = [
     "machines/five_axis_table_table",
     "tools/end_mills",
 ];
+const WORM: [&str; 10] = [
+    "tools/cylinder",
+    "machines/crossed_pair",
+    "machines/hobbing_6axis",
+    "machines/hobbing_geared",
+    "machines/hobbing_radial",
+    "tools/hob_straight",
+    "pairs/worm_and_wheel",
+    "bodies/worm_and_wheel_body",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
 
 /// A job that mills a flank of a spur gear, which is convex across the passes and straight along them.
 fn spur(cutter: &str, milling: &str) -> String {
@@ -54,4 +66,22 @@ fn a_cutter_is_clear_of_what_it_touches() {
     let (code, _, told) = mill(&spec, &out, &[]);
     assert_eq!(code, 3, "{told}");
     assert!(told.contains("0.000001 mm are wanted"), "{told}");
+}
+
+/// Round a worm the rotary table turns far in a block, and the cutter's axis stays 80 degrees away from the pole.
+#[test]
+fn long_blocks_round_a_thread_pass_no_pole() {
+    let out = folder("mill_thread");
+    let milling = "job milled extends worm_and_wheel_body {\n machine mill = five_axis_table_table(work_z: 60 mm)\n \
+        tool ball = ball_mill(radius: 1 mm, reach: 40 mm, holder_radius: 8 mm)\n mount ball on mill.cutter\n \
+        mill a of worm_flank with ball.cutting in mill.work {\n passes rho: 24 mm .. 24.5 mm by 3\n \
+        along z: -20 mm .. 20 mm, chord 0.5 um\n lead 5 deg\n tilt -60 deg\n }\n}\n";
+    let spec = written(&out, "milled.chain", &format!("{}\n{milling}", self_contained(&WORM)));
+    for words in [&[][..], &["--tcp"]] {
+        let found = json(&spec, &out, &[&["--nc", "siemens"], words].concat());
+        assert!(found["least_from_pole"].as_f64().unwrap() > 60.0, "{found}");
+        let [most, least] = [0, 1].map(|k| found["blocks"][k]["height_um"].as_f64().unwrap());
+        assert!(most <= 0.5 && least >= -0.5, "{words:?}: {most} {least}");
+        assert!(out.join("milled.a.mpf").exists(), "{words:?}");
+    }
 }

@@ -13,8 +13,11 @@ use crate::project::units;
 const POINTS_OF_BLOCK: usize = 9;
 /// Axes that do not bring the cutter where it should be by more than this are no solution, mm or parts of a unit vector.
 const MET: f64 = 1e-8;
-/// A rotary axis that turns farther in one block goes through a pole.
+/// A rotary axis that turns farther in one block, radians, ...
 const FAR: f64 = 0.5;
+/// ... while the cutter's axis is nearer to the pole than this, where it turns ten times as far as that, goes through the pole. Farther off a long
+/// block turns it as far.
+const SWINGS: f64 = 0.1;
 
 /// A machine that takes the cutter along passes.
 pub(super) struct Machine<'p, 'g> {
@@ -118,16 +121,15 @@ impl<'p, 'g> Machine<'p, 'g> {
         }
         for axis in self.axes.rotary() {
             let turn = |k: usize| (rows[k + 1][axis] - rows[k][axis]).abs();
-            let Some(k) = (0..rows.len().saturating_sub(1)).max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else {
-                continue;
-            };
-            if turn(k) > FAR {
+            let from_pole = |k: usize| self.axes.block_from_pole(&poses[k], &poses[k + 1]);
+            let swings = (0..rows.len().saturating_sub(1)).filter(|k| turn(*k) > FAR && from_pole(*k) < SWINGS);
+            if let Some(k) = swings.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) {
                 let message = format!(
                     "{} of {name} turns by {:.1} deg in the block at {}: the cutter's axis passes the pole, {:.3} deg from it",
                     self.free[axis].name,
                     turn(k).to_degrees(),
                     place(k),
-                    self.axes.angle_from_pole(&poses[k]).min(self.axes.angle_from_pole(&poses[k + 1])).to_degrees()
+                    from_pole(k).to_degrees()
                 );
                 let way = "lean the cutter away with `lead` or `tilt`, or clamp the work at another angle".to_string();
                 found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![way]));
@@ -212,6 +214,11 @@ impl FreeAxes {
     /// Where the axes bring the cutter.
     pub(super) fn pose(&self, axes: &[f64]) -> [f64; 6] {
         self.closed.pose(axes)
+    }
+
+    /// The least angle of the cutter's axis from where a rotary axis is free while it turns from one pose to another, radians.
+    fn block_from_pole(&self, from: &[f64; 6], to: &[f64; 6]) -> f64 {
+        self.closed.from_pole_between([from[3], from[4], from[5]], [to[3], to[4], to[5]])
     }
 
     /// The angle of the cutter's axis from where a rotary axis is free, radians.
