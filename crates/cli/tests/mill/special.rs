@@ -68,6 +68,22 @@ fn a_cutter_is_clear_of_what_it_touches() {
     assert!(told.contains("0.000001 mm are wanted"), "{told}");
 }
 
+/// A flank that is straight along the tooth is nowhere hollow, and a cone's side leaves no ridge across the feed.
+#[test]
+fn what_is_straight_has_no_radius() {
+    let out = folder("mill_straight");
+    let spec = written(&out, "milled.chain", &spur(BALL, "lead 5 deg\n tilt 75 deg"));
+    let found = json(&spec, &out, &[]);
+    assert!(found["largest_ball"].is_null(), "{}", found["largest_ball"]);
+    let (_, told, _) = mill(&spec, &out, &[]);
+    assert!(told.contains("largest ball any by the curvature"), "{told}");
+    let cone =
+        "conical_mill(tip_radius: 0.5 mm, half_angle: 3 deg, cutting_length: 15 mm, reach: 40 mm, holder_radius: 8 mm)";
+    let spec = written(&out, "milled.chain", &spur(cone, "lead 0 deg\n tilt 87 deg"));
+    let (_, told, errors) = mill(&spec, &out, &[]);
+    assert!(told.contains("radius       straight across the feed"), "{told}{errors}");
+}
+
 /// Round a worm the rotary table turns far in a block, and the cutter's axis stays 80 degrees away from the pole.
 #[test]
 fn long_blocks_round_a_thread_pass_no_pole() {

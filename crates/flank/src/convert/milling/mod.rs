@@ -81,6 +81,9 @@ fn asked<'j, 'g>(jobs: &'j [Job<'g>], request: &MillRequest) -> Result<Vec<(&'j 
     Ok(found)
 }
 
+/// A radius above this, mm, is straight: over 100 mm it bends by a thousandth of a um.
+const STRAIGHT: f64 = 1e9;
+
 /// What is milled, with what is worked out of it.
 struct Milled<'p, 'g> {
     plan: Plan,
@@ -363,13 +366,19 @@ fn bending(result: &mut MillResult, target: &Target<'_, '_>, cutter: &MillingCut
     });
     let known: Vec<([f64; 2], Bending)> = known.collect();
     let radii = known.iter().map(|(_, bending)| bending.effective_radius);
-    result.effective_radius =
-        radii.clone().reduce(f64::min).zip(radii.reduce(f64::max)).map(|(least, most)| [least, most]);
+    result.effective_radius = radii
+        .clone()
+        .reduce(f64::min)
+        .zip(radii.reduce(f64::max))
+        .map(|(least, most)| [least, most])
+        .filter(|[_, most]| *most < STRAIGHT);
     let least = known.iter().min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
     result.least_gap_curvature =
         least.map(|(shares, bending)| CurvatureAt { curvature: bending.gap, place: target.place(*shares) });
-    let hollow =
-        known.iter().min_by(|a, b| a.1.hollow.total_cmp(&b.1.hollow)).filter(|(_, bending)| bending.hollow < 0.0);
+    let hollow = known
+        .iter()
+        .min_by(|a, b| a.1.hollow.total_cmp(&b.1.hollow))
+        .filter(|(_, bending)| bending.hollow < -1.0 / STRAIGHT);
     result.largest_ball =
         hollow.map(|(shares, bending)| BallAt { radius: -1.0 / bending.hollow, place: target.place(*shares) });
     if let Some((shares, _)) = least.filter(|(_, bending)| bending.gap < 0.0) {
