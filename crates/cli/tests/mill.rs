@@ -5,7 +5,11 @@
 mod dexels;
 #[path = "mill/pair.rs"]
 mod pair;
+#[path = "mill/special.rs"]
+mod special;
 mod support;
+#[path = "mill/verified.rs"]
+mod verified;
 
 use std::path::Path;
 use std::process::Command;

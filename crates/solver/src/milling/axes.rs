@@ -98,4 +98,15 @@ impl MillAxes {
         let (axis, pole) = (Vector3::from(axis), Vector3::from(self.pole));
         axis.cross(&pole).norm().atan2(axis.dot(&pole).abs())
     }
+
+    /// The least such angle while the cutter's axis turns from one direction to another.
+    pub fn from_pole_between(&self, from: [f64; 3], to: [f64; 3]) -> f64 {
+        let at_ends = self.from_pole(from).min(self.from_pole(to));
+        let [a, b, pole] = [from, to, self.pole].map(Vector3::from);
+        let across = a.cross(&b);
+        // the direction in the plane of the turn that is nearest to the pole: passed where both ends, or those opposite, lie beside it
+        let nearest = pole * across.norm_squared() - across * across.dot(&pole);
+        let is_passed = a.cross(&nearest).dot(&across) * nearest.cross(&b).dot(&across) > 0.0;
+        if is_passed { at_ends.min(self.from_pole(nearest.into())) } else { at_ends }
+    }
 }

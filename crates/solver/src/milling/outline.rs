@@ -125,7 +125,7 @@ fn piece(points: &[[f64; 2]], outside: [f64; 2]) -> Result<OutlinePiece, NoOutli
         let is_left = off(&[middle[0] + outside[0], middle[1] + outside[1]]) > 0.0;
         return Ok(if is_left { OutlinePiece::Line { from, to } } else { OutlinePiece::Line { from: to, to: from } });
     }
-    let center = center_of([from, middle, to]);
+    let center = on_axis(center_of([from, middle, to]));
     let radius = (middle[0] - center[0]).hypot(middle[1] - center[1]);
     let is_off = |p: &[f64; 2]| ((p[0] - center[0]).hypot(p[1] - center[1]) - radius).abs() > SAME;
     if points.iter().any(is_off) {
@@ -137,6 +137,11 @@ fn piece(points: &[[f64; 2]], outside: [f64; 2]) -> Result<OutlinePiece, NoOutli
     let angle = |p: [f64; 2]| (p[0] - center[0]).atan2(center[1] - p[1]);
     let [a, b] = [angle(from), angle(to)];
     Ok(OutlinePiece::Arc { center, radius, between: [a.min(b), a.max(b)] })
+}
+
+/// A centre that rounding alone keeps off the axis lies on it: the arc is that of a ball, which has no bottom and touches with its tip.
+fn on_axis([rho, z]: [f64; 2]) -> [f64; 2] {
+    [if rho.abs() <= SAME { 0.0 } else { rho }, z]
 }
 
 fn center_of([a, b, c]: [[f64; 2]; 3]) -> [f64; 2] {
@@ -332,5 +337,15 @@ mod tests {
         assert_eq!(side, Ok(OutlinePiece::Line { from: [3.0, 0.0], to: [3.0, 8.0] }));
         let bow: Vec<[f64; 2]> = (0..9).map(f64::from).map(|k| [k * k * k * 0.01, k]).collect();
         assert_eq!(piece(&bow, [1.0, 0.0]), Err(NoOutline::NotAnArc));
+    }
+
+    #[test]
+    fn the_arc_of_a_ball_has_its_centre_on_the_axis() {
+        for radius in [0.3, 1.0, 2.7] {
+            let arc: Vec<[f64; 2]> =
+                (0..9).map(|k| f64::from(k) * 0.19).map(|a| [radius * a.sin(), radius - radius * a.cos()]).collect();
+            let Ok(OutlinePiece::Arc { center, .. }) = piece(&arc, [0.6, -0.8]) else { panic!("an arc") };
+            assert_eq!(center[0], 0.0, "{radius}");
+        }
     }
 }

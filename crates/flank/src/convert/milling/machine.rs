@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{Axis, Job, LawSource, Machine as JobMachine, Milling};
 use flank_expr::Expr;
 use flank_solver::{MillAxes, NotExplicit, PoseSeries};
+use nalgebra::{Matrix3, Vector3};
 
+use crate::convert::files::decimals;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
 
@@ -13,8 +15,11 @@ use crate::project::units;
 const POINTS_OF_BLOCK: usize = 9;
 /// Axes that do not bring the cutter where it should be by more than this are no solution, mm or parts of a unit vector.
 const MET: f64 = 1e-8;
-/// A rotary axis that turns farther in one block goes through a pole.
+/// A rotary axis that turns farther in one block, radians, ...
 const FAR: f64 = 0.5;
+/// ... while the cutter's axis is nearer to the pole than this, where it turns ten times as far as that, goes through the pole. Farther off a long
+/// block turns it as far.
+const SWINGS: f64 = 0.1;
 
 /// A machine that takes the cutter along passes.
 pub(super) struct Machine<'p, 'g> {
@@ -74,6 +79,24 @@ impl<'p, 'g> Machine<'p, 'g> {
         Machine { axes: self.axes.on_best_elbow(passes), ..self }
     }
 
+    /// How far the words of an axis are rounded, mm or radians: half of the last decimal.
+    pub(super) fn rounding(&self, axis: usize) -> f64 {
+        let own = self.free[axis];
+        let half = 0.5 * 0.1_f64.powi(i32::from(decimals(own.dimension, &own.word)));
+        if self.axes.is_rotary(axis) { half.to_radians() } else { half }
+    }
+
+    /// How far rounded words put a point of the cutter beside where it should be, at the most, mm; the point is no farther than `reach` from the tip.
+    pub(super) fn rounded(&self, axes: &[f64], reach: f64) -> f64 {
+        let here = self.axes.pose(axes);
+        let by_axis = |axis: usize| {
+            let mut moved = axes.to_vec();
+            moved[axis] += self.rounding(axis);
+            moved_by(&here, &self.axes.pose(&moved), reach)
+        };
+        (0..axes.len()).map(by_axis).sum()
+    }
+
     /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.
     pub(super) fn faults(
         &self,
@@ -118,16 +141,15 @@ impl<'p, 'g> Machine<'p, 'g> {
         }
         for axis in self.axes.rotary() {
             let turn = |k: usize| (rows[k + 1][axis] - rows[k][axis]).abs();
-            let Some(k) = (0..rows.len().saturating_sub(1)).max_by(|a, b| turn(*a).total_cmp(&turn(*b))) else {
-                continue;
-            };
-            if turn(k) > FAR {
+            let from_pole = |k: usize| self.axes.block_from_pole(&poses[k], &poses[k + 1]);
+            let swings = (0..rows.len().saturating_sub(1)).filter(|k| turn(*k) > FAR && from_pole(*k) < SWINGS);
+            if let Some(k) = swings.max_by(|a, b| turn(*a).total_cmp(&turn(*b))) {
                 let message = format!(
                     "{} of {name} turns by {:.1} deg in the block at {}: the cutter's axis passes the pole, {:.3} deg from it",
                     self.free[axis].name,
                     turn(k).to_degrees(),
                     place(k),
-                    self.axes.angle_from_pole(&poses[k]).min(self.axes.angle_from_pole(&poses[k + 1])).to_degrees()
+                    from_pole(k).to_degrees()
                 );
                 let way = "lean the cutter away with `lead` or `tilt`, or clamp the work at another angle".to_string();
                 found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![way]));
@@ -135,6 +157,12 @@ impl<'p, 'g> Machine<'p, 'g> {
         }
         found
     }
+}
+
+/// How far a point of the cutter moves from one pose to another, at the most, mm; it is no farther than `reach` from the tip.
+pub(super) fn moved_by(from: &[f64; 6], to: &[f64; 6], reach: f64) -> f64 {
+    let turned = (3..6).map(|k| (from[k] - to[k]).powi(2)).sum::<f64>().sqrt();
+    super::distance(from, to) + reach * turned
 }
 
 impl FreeAxes {
@@ -160,7 +188,7 @@ impl FreeAxes {
         FreeAxes { elbow, ..self }
     }
 
-    fn rotary(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn rotary(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.is_rotary.len()).filter(|k| self.is_rotary(*k))
     }
 
@@ -200,7 +228,8 @@ impl FreeAxes {
     }
 
     /// The cutter while its tip goes straight and the rotary axes turn evenly: tool-centre control.
-    pub(super) fn straight_tip(&self, (from, to): (&[f64], &[f64]), (tip, end): (&[f64], &[f64])) -> PoseSeries {
+    pub(super) fn straight_tip(&self, from: &[f64], to: &[f64]) -> PoseSeries {
+        let [tip, end] = [from, to].map(|axes| self.closed.pose(axes));
         PoseSeries::sampled(POINTS_OF_BLOCK, |share| {
             let at: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect();
             let mut pose = self.closed.pose(&at);
@@ -209,9 +238,34 @@ impl FreeAxes {
         })
     }
 
+    /// The axes with linear ones that bring the tip to a place.
+    pub(super) fn with_tip(&self, axes: &[f64], tip: [f64; 3]) -> Vec<f64> {
+        let linear: Vec<usize> = (0..axes.len()).filter(|axis| !self.is_rotary[*axis]).collect();
+        let at = |axes: &[f64]| {
+            let [x, y, z, ..] = self.closed.pose(axes);
+            Vector3::new(x, y, z)
+        };
+        let here = at(axes);
+        let mut found = axes.to_vec();
+        let shift = |axis: &usize| {
+            let mut moved = axes.to_vec();
+            moved[*axis] += 1.0;
+            at(&moved) - here
+        };
+        let shifts = Matrix3::from_columns(&linear.iter().map(shift).collect::<Vec<_>>());
+        let by = shifts.lu().solve(&(Vector3::from(tip) - here)).expect("the linear axes of closed forms span space");
+        linear.iter().zip(by.iter()).for_each(|(axis, by)| found[*axis] += by);
+        found
+    }
+
     /// Where the axes bring the cutter.
     pub(super) fn pose(&self, axes: &[f64]) -> [f64; 6] {
         self.closed.pose(axes)
+    }
+
+    /// The least angle of the cutter's axis from where a rotary axis is free while it turns from one pose to another, radians.
+    fn block_from_pole(&self, from: &[f64; 6], to: &[f64; 6]) -> f64 {
+        self.closed.from_pole_between([from[3], from[4], from[5]], [to[3], to[4], to[5]])
     }
 
     /// The angle of the cutter's axis from where a rotary axis is free, radians.

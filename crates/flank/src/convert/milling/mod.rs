@@ -1,10 +1,12 @@
 //! `flank mill`
 
+mod block;
 pub(crate) mod clamp;
 mod cutter;
 pub(crate) mod drawn;
 mod files;
 pub(crate) mod flank;
+mod iso;
 mod klartext;
 mod left;
 mod machine;
@@ -80,6 +82,9 @@ fn asked<'j, 'g>(jobs: &'j [Job<'g>], request: &MillRequest) -> Result<Vec<(&'j 
     }
     Ok(found)
 }
+
+/// A radius above this, mm, is straight: over 100 mm it bends by a thousandth of a um.
+const STRAIGHT: f64 = 1e9;
 
 /// What is milled, with what is worked out of it.
 struct Milled<'p, 'g> {
@@ -187,15 +192,16 @@ fn of_milling(
     session: Session<'_>,
 ) -> Result<MillResult, Failure> {
     let Worked { target, mut result, found } = worked(job, milling, request, session)?;
-    if let Some(Found { cutter, fields, milled, map, .. }) = &found {
+    if let Some(found @ Found { milled, map, .. }) = &found {
         let read = match (&request.verify, &milled.machine) {
-            (Some(path), Some(machine)) => Some(verify::program(path, &target, cutter, machine, (fields, map.counts))?),
+            (Some(path), Some(machine)) => Some(verify::program(path, &target, found, machine)?),
             _ => None,
         };
         result.verified = read.as_ref().map(|read| read.result(&target));
-        // what is not passed over is told, and hinders no program
+        // what is not passed over is told, and hinders no program; nor does what ails one that was read back
         let is_whole = result.not_done.is_empty();
         result.not_done.extend(map.missing(&target));
+        result.not_done.extend(read.iter().flat_map(|read| read.missed(&target)));
         let maps = (map, read.as_ref().map(|read| &read.map));
         result.files = files::write(job, &target, (milled, maps), (request, origin, session), is_whole)?;
     }
@@ -363,13 +369,19 @@ fn bending(result: &mut MillResult, target: &Target<'_, '_>, cutter: &MillingCut
     });
     let known: Vec<([f64; 2], Bending)> = known.collect();
     let radii = known.iter().map(|(_, bending)| bending.effective_radius);
-    result.effective_radius =
-        radii.clone().reduce(f64::min).zip(radii.reduce(f64::max)).map(|(least, most)| [least, most]);
+    result.effective_radius = radii
+        .clone()
+        .reduce(f64::min)
+        .zip(radii.reduce(f64::max))
+        .map(|(least, most)| [least, most])
+        .filter(|[_, most]| *most < STRAIGHT);
     let least = known.iter().min_by(|a, b| a.1.gap.total_cmp(&b.1.gap));
     result.least_gap_curvature =
         least.map(|(shares, bending)| CurvatureAt { curvature: bending.gap, place: target.place(*shares) });
-    let hollow =
-        known.iter().min_by(|a, b| a.1.hollow.total_cmp(&b.1.hollow)).filter(|(_, bending)| bending.hollow < 0.0);
+    let hollow = known
+        .iter()
+        .min_by(|a, b| a.1.hollow.total_cmp(&b.1.hollow))
+        .filter(|(_, bending)| bending.hollow < -1.0 / STRAIGHT);
     result.largest_ball =
         hollow.map(|(shares, bending)| BallAt { radius: -1.0 / bending.hollow, place: target.place(*shares) });
     if let Some((shares, _)) = least.filter(|(_, bending)| bending.gap < 0.0) {

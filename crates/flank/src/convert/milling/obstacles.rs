@@ -3,6 +3,7 @@
 use flank_chain_dsl::{
     CutterPiece, Job, MilledArea, Milling, MillingClearance, MillingObstacle, SampleGrid, ToolShape,
 };
+use flank_export::fixed;
 use flank_expr::geometry::Chain;
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Chart, Obstacle, PoseField, ToolBody};
@@ -190,6 +191,8 @@ fn largest_ball(
 /// A position, and what is nearest there.
 type Found = ([usize; 2], flank_solver::Nearest);
 
+/// The least distance over all positions, and what is missed. A polynomial stands for the surface that is as near to it as [`NEAR`]: what
+/// is missed by less is not known to be missed, as by a ball that touches the surface that it mills.
 fn least(
     target: &Target<'_, '_>,
     milled: &Milled<'_, '_>,
@@ -222,12 +225,15 @@ fn least(
         foot: foot.clone(),
         proven: None,
     };
-    let not_clear = (nearest.distance < clearance.distance).then(|| {
+    let not_clear = (nearest.distance < clearance.distance - NEAR).then(|| {
         let ClearanceKept { surface, body, wanted, least, .. } = &kept;
-        let message = if *least < 0.0 {
+        let message = if *least < -NEAR {
             format!("{body} cuts {:.4} mm into {surface} while the cutter is at {place}", -least)
         } else {
-            format!("{body} comes as near as {least:.4} mm to {surface} while the cutter is at {place}, {wanted} mm are wanted")
+            format!(
+                "{body} comes as near as {} mm to {surface} while the cutter is at {place}, {wanted} mm are wanted",
+                fixed(*least, 4)
+            )
         };
         let details = [
             Some(format!("the nearest place of {surface} is at {foot}")),

@@ -19,6 +19,8 @@ const FEW_COLUMNS: usize = 5;
 const FEW_PASSES: usize = 5;
 /// Of a ridge no more than this share of the passes is missing at their ends.
 const ENDS: f64 = 1.0 / 16.0;
+/// Of so many positions on a pass none is far from the next: a block that leaves the surface then does so for another reason than its length.
+const SHORT: usize = 1000;
 /// Halvings until the end of a ridge is found.
 const HALVINGS: u32 = 24;
 /// Points through which the motion of one block is known.
@@ -292,8 +294,14 @@ pub(super) fn positions(
         BlockLength::Chord(chord) => chord,
     };
     let mut count: usize = 17;
+    // round a thread, blocks may be too long to stay beside the surface
+    let mut found = left(count);
+    while count < SHORT && found.is_err() {
+        count = 2 * count - 1;
+        found = left(count);
+    }
     for _ in 0..40 {
-        let [most, least] = left(count)?;
+        let [most, least] = found?;
         let off = most.height.max(-least.height);
         if off <= wanted {
             return Ok(count);
@@ -302,6 +310,7 @@ pub(super) fn positions(
         if count > MOST {
             return Err(too_many(count));
         }
+        found = left(count);
     }
     Ok(count)
 }

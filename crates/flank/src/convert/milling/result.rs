@@ -49,11 +49,11 @@ pub struct MillResult {
     pub blocks: Option<[HeightLeft; 2]>,
     /// Whether the cutter goes straight in a block (tool-centre control), else all axes do.
     pub tool_centre_control: bool,
-    /// The least and the largest radius across the feed of what the cutter sweeps, mm.
+    /// The least and the largest radius across the feed of what the cutter sweeps, mm; null where that is straight, as with the side of a cone.
     pub effective_radius: Option<[f64; 2]>,
     /// Where the gap between cutter and surface bends least: negative, 1/mm, where the cutter cuts too deep beside its contact.
     pub least_gap_curvature: Option<CurvatureAt>,
-    /// The largest ball that the hollow of the surface takes, mm, and where; null where it is convex all over.
+    /// The largest ball that the hollow of the surface takes, mm, and where; null where it is hollow nowhere: any ball fits.
     pub largest_ball: Option<BallAt>,
     /// How near the cutter comes to what it keeps clear of.
     pub clearances: Vec<ClearanceKept>,

@@ -5,7 +5,7 @@ use std::fmt;
 use flank_export::fixed;
 
 use super::clamp::Clamping;
-use super::result::{ClearanceKept, HeightLeft, HeightMap, MillResult, VerifiedProgram};
+use super::result::{BallAt, ClearanceKept, HeightLeft, HeightMap, MillResult, VerifiedProgram};
 use super::side::SideLeft;
 use crate::project::units;
 
@@ -50,14 +50,11 @@ impl MillResult {
             facts.push(("blocks", format!("{how}; left {}", at(most))));
             facts.push(("", format!("too deep {}", at(&deep(least)))));
         }
-        if let Some([least, most]) = self.effective_radius {
-            facts.push(("radius", format!("{} .. {} mm across the feed", fixed(least, 3), fixed(most, 3))));
-        }
         if let Some(gap) = &self.least_gap_curvature {
+            facts.push(("radius", self.effective_radius.map_or("straight across the feed".to_string(), across)));
             facts.push(("gap", format!("bends by {} 1/mm at least, at {}", fixed(gap.curvature, 5), gap.place)));
-        }
-        if let Some(ball) = &self.largest_ball {
-            facts.push(("largest ball", format!("R {} mm by the curvature, at {}", fixed(ball.radius, 3), ball.place)));
+            facts
+                .push(("largest ball", self.largest_ball.as_ref().map_or("any by the curvature".to_string(), of_ball)));
         }
         for kept in &self.clearances {
             let (least, ClearanceKept { surface, body, place, .. }) = (fixed(kept.least, 4), kept);
@@ -83,6 +80,14 @@ impl MillResult {
         facts.extend(self.verified.iter().flat_map(of_program));
         facts.into_iter().map(|(name, text)| (name.to_string(), text)).collect()
     }
+}
+
+fn across([least, most]: [f64; 2]) -> String {
+    format!("{} .. {} mm across the feed", fixed(least, 3), fixed(most, 3))
+}
+
+fn of_ball(ball: &BallAt) -> String {
+    format!("R {} mm by the curvature, at {}", fixed(ball.radius, 3), ball.place)
 }
 
 fn of_program(program: &VerifiedProgram) -> Vec<(&'static str, String)> {

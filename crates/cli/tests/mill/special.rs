@@ -1,0 +1,103 @@
+//! Leans, surfaces and blocks that are special cases: a ball that touches with its tip, what only rounding misses, what is straight, long blocks.
+
+use super::support::{folder, self_contained, written};
+use super::{json, mill};
+
+/// What the jobs need of the library.
+const SPUR_GEAR: [&str; 7] = [
+    "machines/hobbing_6axis",
+    "machines/rack_generating",
+    "tools/rack",
+    "hobbing/spur_gear",
+    "bodies/spur_gear_body",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
+const WORM: [&str; 10] = [
+    "tools/cylinder",
+    "machines/crossed_pair",
+    "machines/hobbing_6axis",
+    "machines/hobbing_geared",
+    "machines/hobbing_radial",
+    "tools/hob_straight",
+    "pairs/worm_and_wheel",
+    "bodies/worm_and_wheel_body",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
+
+/// A job that mills a flank of a spur gear, which is convex across the passes and straight along them.
+fn spur(cutter: &str, milling: &str) -> String {
+    let library = self_contained(&SPUR_GEAR);
+    format!(
+        "{library}\njob milled extends spur_gear_body {{\n machine mill = five_axis_table_table(work_z: 60 mm)\n tool cutter = {cutter}\n \
+         mount cutter on mill.cutter\n mill part of flank_plus with cutter.cutting in mill.work {{\n passes rho: 35 mm .. 39 mm by 13\n \
+         along z: -10 mm .. 10 mm by 5\n{milling}\n }}\n}}\n"
+    )
+}
+
+const BALL: &str = "ball_mill(radius: 1 mm, reach: 40 mm, holder_radius: 8 mm)";
+
+/// A ball has no bottom: upright on the surface, and while it leans from one side to the other, it touches with its tip.
+#[test]
+fn a_ball_touches_with_its_tip() {
+    let out = folder("mill_upright");
+    for lean in ["lead 0 deg\n tilt 0 deg", "lead 2 deg * (z / 10 mm)\n tilt 0 deg"] {
+        let spec = written(&out, "milled.chain", &spur(BALL, lean));
+        let found = json(&spec, &out, &[]);
+        let [least, most] = [0, 1].map(|k| found["effective_radius"][k].as_f64().unwrap());
+        assert!((least - 1.0).abs() < 1e-9 && (most - 1.0).abs() < 1e-9, "{lean}: {least} {most}");
+        assert!(found["map"]["left"][1]["height_um"].as_f64().unwrap() > -1e-6, "{lean}");
+        assert_eq!(found["map"]["untouched"], 0, "{lean}");
+    }
+}
+
+/// A ball that touches the milled surface stays clear of it by nothing.
+#[test]
+fn a_cutter_is_clear_of_what_it_touches() {
+    let out = folder("mill_own");
+    let milling = |by: &str| format!("lead 0 deg\n tilt 75 deg\n clear of flank_plus by {by} with cutter.whole");
+    let spec = written(&out, "milled.chain", &spur(BALL, &milling("0 mm")));
+    let found = json(&spec, &out, &[]);
+    let least = found["clearances"][0]["least"].as_f64().unwrap();
+    assert!(least.abs() < 1e-10, "{least}");
+    // what is more than rounding is missed as before
+    let spec = written(&out, "milled.chain", &spur(BALL, &milling("0.000001 mm")));
+    let (code, _, told) = mill(&spec, &out, &[]);
+    assert_eq!(code, 3, "{told}");
+    assert!(told.contains("0.000001 mm are wanted"), "{told}");
+}
+
+/// A flank that is straight along the tooth is nowhere hollow, and a cone's side leaves no ridge across the feed.
+#[test]
+fn what_is_straight_has_no_radius() {
+    let out = folder("mill_straight");
+    let spec = written(&out, "milled.chain", &spur(BALL, "lead 5 deg\n tilt 75 deg"));
+    let found = json(&spec, &out, &[]);
+    assert!(found["largest_ball"].is_null(), "{}", found["largest_ball"]);
+    let (_, told, _) = mill(&spec, &out, &[]);
+    assert!(told.contains("largest ball any by the curvature"), "{told}");
+    let cone =
+        "conical_mill(tip_radius: 0.5 mm, half_angle: 3 deg, cutting_length: 15 mm, reach: 40 mm, holder_radius: 8 mm)";
+    let spec = written(&out, "milled.chain", &spur(cone, "lead 0 deg\n tilt 87 deg"));
+    let (_, told, errors) = mill(&spec, &out, &[]);
+    assert!(told.contains("radius       straight across the feed"), "{told}{errors}");
+}
+
+/// Round a worm the rotary table turns far in a block, and the cutter's axis stays 80 degrees away from the pole.
+#[test]
+fn long_blocks_round_a_thread_pass_no_pole() {
+    let out = folder("mill_thread");
+    let milling = "job milled extends worm_and_wheel_body {\n machine mill = five_axis_table_table(work_z: 60 mm)\n \
+        tool ball = ball_mill(radius: 1 mm, reach: 40 mm, holder_radius: 8 mm)\n mount ball on mill.cutter\n \
+        mill a of worm_flank with ball.cutting in mill.work {\n passes rho: 24 mm .. 24.5 mm by 3\n \
+        along z: -20 mm .. 20 mm, chord 0.5 um\n lead 5 deg\n tilt -60 deg\n }\n}\n";
+    let spec = written(&out, "milled.chain", &format!("{}\n{milling}", self_contained(&WORM)));
+    for words in [&[][..], &["--tcp"]] {
+        let found = json(&spec, &out, &[&["--nc", "siemens"], words].concat());
+        assert!(found["least_from_pole"].as_f64().unwrap() > 60.0, "{found}");
+        let [most, least] = [0, 1].map(|k| found["blocks"][k]["height_um"].as_f64().unwrap());
+        assert!(most <= 0.5 && least >= -0.5, "{words:?}: {most} {least}");
+        assert!(out.join("milled.a.mpf").exists(), "{words:?}");
+    }
+}
