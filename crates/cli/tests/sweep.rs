@@ -428,7 +428,7 @@ fn a_damaged_chunk_does_not_count_and_is_computed_anew() {
         "sweep",
         PINION,
         "--vary",
-        "m.radial_distance=97.9mm..98.1mm by 70",
+        "m.radial_distance=97.9mm..98.1mm by 60",
         "--collect",
         "at:concave[7,15]",
         "--out",
