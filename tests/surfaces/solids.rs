@@ -22,11 +22,12 @@ struct Asked<'a> {
     deviation: f64,
     /// What of the text is replaced by what.
     changed: Option<(&'a str, &'a str)>,
+    ball: Option<f64>,
 }
 
 impl<'a> Asked<'a> {
     fn new(spec: &'a str, job: &'a str, set: &'a [(&'a str, &'a str)]) -> Asked<'a> {
-        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None }
+        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None, ball: None }
     }
 
     /// The result, and the triangles that were written of each solid, in a folder.
@@ -48,7 +49,7 @@ impl<'a> Asked<'a> {
             step: None,
             deviation: self.deviation,
             density: 7850.0,
-            ball: None,
+            ball: self.ball,
             evaluator: EvaluatorOptions::default(),
         };
         let mut results = Vec::new();
@@ -104,6 +105,25 @@ impl Spur {
         let at = (self.radius() * ALPHA.cos() / rho).acos();
         let tooth = FRAC_PI_2 / self.teeth + 2.0 * self.shift * ALPHA.tan() / self.teeth + inv(ALPHA) - inv(at);
         PI / self.teeth - tooth
+    }
+
+    /// Where the trochoid crosses the involute of a gear that is cut under: its angle, and the distance from the axis.
+    fn undercut(&self) -> (f64, f64) {
+        let differs = |theta: f64| {
+            let [rho, angle] = self.trochoid(theta);
+            angle - self.involute(rho)
+        };
+        // from the root up the fillet's space is the wider one, from where they cross on the flank's
+        let base = self.radius() * ALPHA.cos();
+        let thetas = (0..4000).map(|k| FRAC_PI_2 - f64::from(k) / 4000.0 * (FRAC_PI_2 - ALPHA));
+        let mut above = thetas.filter(|theta| self.trochoid(*theta)[0] > base);
+        let crossed = above.find(|theta| differs(*theta) < 0.0).expect("they cross");
+        let (mut low, mut high) = (crossed, crossed + (FRAC_PI_2 - ALPHA) / 4000.0);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            if differs(middle) < 0.0 { low = middle } else { high = middle }
+        }
+        (low, self.trochoid(low)[0])
     }
 
     /// The area of one space up to a tip radius: half the angle times twice ρ dρ, flank and fillet one after the other.
@@ -184,9 +204,18 @@ fn gauges_find_what_an_involute_has() {
             let at = (2.0 * base / diameter).acos();
             let angle = 2.0 * (half + inv(transverse) - inv(at));
             near(found.arc_mm, 0.5 * diameter * angle, "thickness");
-            near(found.chord_mm, diameter * (0.5 * angle).sin(), "chord");
-            let height = 0.5 * (gauges.tip_diameter_mm.expect("round") - diameter * (0.5 * angle).cos());
-            near(found.chord_height_mm, height, "height");
+            // the shortest way between the two lines in which the flanks meet the cylinder: one is by z the other turned
+            let lead = radius / beta.tan();
+            let turned = |z: f64| angle - z.abs() / lead.abs();
+            let apart = |z: f64| (diameter * (0.5 * turned(z)).sin()).hypot(z);
+            let (mut low, mut high) = (0.0, 0.5 * diameter * angle);
+            while high - low > 1e-9 {
+                let [a, b] = [(2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0];
+                if apart(a) < apart(b) { high = b } else { low = a }
+            }
+            near(found.chord_mm.expect("within the face"), apart(low), "chord");
+            let height = 0.5 * (gauges.tip_diameter_mm.expect("round") - diameter * (0.5 * turned(low)).cos());
+            near(found.chord_height_mm.expect("within the face"), height, "height");
         }
         assert!(gauges.spans.len() > 1, "{:?}", gauges.spans);
         for span in &gauges.spans {
@@ -198,6 +227,41 @@ fn gauges_find_what_an_involute_has() {
         let centre = base / arcinv(wanted).cos();
         let across = if teeth % 2.0 == 0.0 { 1.0 } else { (FRAC_PI_2 / teeth).cos() };
         near(balls.over_balls_mm, 2.0 * centre * across + balls.ball_mm, "balls");
+    }
+}
+
+/// A ball as wide as the space is square to its flanks touches also where these lie aslant; one that does not is told.
+#[test]
+fn balls_touch_steep_helices_and_those_that_do_not_are_told() {
+    let inv = |angle: f64| angle.tan() - angle;
+    let set = [("helix_angle", "60 deg"), ("teeth", "11"), ("shift", "0.75 mm")];
+    let asked = || Asked::new("specs/bodies/helical_gear_body.chain", "helical_gear_body", &set);
+    let (body, _) = asked().only();
+    let transverse = (2.0 * ALPHA.tan()).atan();
+    let base = 33.0 * transverse.cos();
+    let half = (FRAC_PI_2 + 0.5 * ALPHA.tan()) / 11.0;
+    let balls = body.gauges.balls.as_ref().expect("one touches");
+    let wanted = inv(transverse) + balls.ball_mm / (33.0 * ALPHA.cos()) + half - PI / 11.0;
+    let exact = 2.0 * base / arcinv(wanted).cos() * (FRAC_PI_2 / 11.0).cos() + balls.ball_mm;
+    assert!((balls.over_balls_mm - exact).abs() < 2e-8, "{balls:?} {exact}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = Asked { ball: Some(30.0), ..asked() }.built(folder.path());
+    assert!(result.solids[0].gauges.balls.is_none());
+    let told: Vec<&str> = result.not_done().iter().map(|missing| missing.message.as_str()).collect();
+    assert_eq!(told, ["balls of 30 mm do not touch both flanks of a space of `gear` half-way along"]);
+}
+
+/// The tooth of a worm of one start begins and ends in the middle of the same space: it is the worm.
+#[test]
+fn the_one_tooth_of_a_worm_is_all_of_it() {
+    for part in [SolidPart::Tooth, SolidPart::Space] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let worm = Asked::new("specs/bodies/worm_and_wheel_body.chain", "worm_and_wheel_body", &[]);
+        let result = Asked { part, deviation: 0.1, ..worm }.built(folder.path());
+        let mesh = triangles(&folder.path().join("worm_and_wheel_body.worm.stl"));
+        assert_eq!(euler_characteristic(&mesh), 0, "{part:?}");
+        let exact = result.solids[0].volume_mm3;
+        assert!((volume(&mesh) / exact - 1.0).abs() < 0.01, "{part:?}: {} {exact}", volume(&mesh));
     }
 }
 
@@ -248,6 +312,38 @@ fn every_mesh_is_closed_and_nears_the_exact_body() {
     }
 }
 
+/// The front of a blank as part of a torus, bulging or hollow, and its bore as an arc: the middles of the mesh's edges lie as near to them as is
+/// said.
+#[test]
+fn meshes_are_as_near_to_arcs_of_the_blank_as_is_said() {
+    let front = "line(from: [-face_width / 2, tip_radius], to: [-face_width / 2, bore])";
+    let bore = "line(from: [-face_width / 2, bore], to: [face_width / 2, bore])";
+    // between tip and bore 19.6 mm, and along the bore 20 mm; a centre lies on the side of the material where the radius is positive
+    let center = |radius: f64, half: f64| radius.signum() * (radius * radius - half * half).sqrt();
+    let arcs = [(front, 25.0, [center(25.0, 9.8) - 10.0, 29.8]), (front, -60.0, [center(-60.0, 9.8) - 10.0, 29.8])];
+    let arcs = arcs.into_iter().chain([(bore, 40.0, [0.0, 20.0 + center(40.0, 10.0)])]);
+    for ((line, radius, [z0, rho0]), part) in
+        arcs.flat_map(|arc| [SolidPart::Gear, SolidPart::Tooth].map(|of| (arc, of)))
+    {
+        let arc = line.replace("line(", "arc(").replace("])", &format!("], radius: {radius} mm)"));
+        let set = [("helix_angle", "0 deg")];
+        let asked = Asked { changed: Some((line, &arc)), part, ..Asked::new(BODIES, "helical", &set) };
+        let off = |[x, y, z]: [f64; 3]| ((z - z0).hypot(x.hypot(y) - rho0) - f64::abs(radius)).abs();
+        let is_on = |point: &[f32; 3]| {
+            let [x, y, z] = point.map(f64::from);
+            (if line == front { z < -5.0 } else { x.hypot(y) < 25.0 }) && off([x, y, z]) < 1e-4
+        };
+        let (_, mesh) = asked.only();
+        let middle = |a: [f32; 3], b: [f32; 3]| [0, 1, 2].map(|k| 0.5 * (f64::from(a[k]) + f64::from(b[k])));
+        let on_arc = mesh.iter().filter(|triangle| triangle.iter().all(is_on));
+        let far: Vec<f64> =
+            on_arc.flat_map(|[a, b, c]| [middle(*a, *b), middle(*b, *c), middle(*c, *a)].map(off)).collect();
+        let most = far.iter().copied().fold(0.0, f64::max);
+        assert!(far.len() > 100 && most < DEVIATION + 1e-5, "{arc} {part:?}: {most} mm of {}", far.len());
+        assert!(most > 0.1 * DEVIATION, "{arc} {part:?}: no finer than is needed: {most} mm");
+    }
+}
+
 #[test]
 fn a_finer_mesh_is_nearer() {
     let asked = |deviation: f64| Asked { deviation, ..Asked::new(BODIES, "helical", &[]) }.only().0;
@@ -277,24 +373,45 @@ fn teeth_that_the_rack_undercuts_end_where_flank_and_fillet_meet() {
     let (body, mesh) = Asked::new(BODIES, "helical", &set).only();
     assert_eq!(euler_characteristic(&mesh), 0);
     let spur = Spur { module: 3.0, teeth: 10.0, shift: 0.0 };
-    let differs = |theta: f64| {
-        let [rho, angle] = spur.trochoid(theta);
-        angle - spur.involute(rho)
-    };
-    // from the root up the fillet's space is the wider one, from where they cross on the flank's
-    let base = spur.radius() * ALPHA.cos();
-    let thetas = (0..4000).map(|k| FRAC_PI_2 - f64::from(k) / 4000.0 * (FRAC_PI_2 - ALPHA));
-    let mut above = thetas.filter(|theta| spur.trochoid(*theta)[0] > base);
-    let crossed = above.find(|theta| differs(*theta) < 0.0).expect("they cross");
-    let (mut low, mut high) = (crossed, crossed + (FRAC_PI_2 - ALPHA) / 4000.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if differs(middle) < 0.0 { low = middle } else { high = middle }
-    }
-    let [form, _] = spur.trochoid(low);
-    let space = spur.fillet(low) + simpson(form, 18.0, |rho| 2.0 * spur.involute(rho) * rho);
+    let (theta, form) = spur.undercut();
+    let space = spur.fillet(theta) + simpson(form, 18.0, |rho| 2.0 * spur.involute(rho) * rho);
     let exact = 20.0 * (PI * (18.0 * 18.0 - 25.0) - 10.0 * space);
     assert!((body.volume_mm3 / exact - 1.0).abs() < 1e-7, "{} {exact}", body.volume_mm3);
+}
+
+/// Fillets that are deeper than what they leave of the flanks: form diameter, span and balls are still the flanks'.
+#[test]
+fn gauges_touch_the_flank_however_deep_the_fillet_is() {
+    let inv = |angle: f64| angle.tan() - angle;
+    for (teeth, shift) in [(20.0, -0.5), (14.0, -0.4)] {
+        let set = [("helix_angle", "0 deg"), ("teeth", &*teeth.to_string()), ("shift", &*shift.to_string())];
+        let (body, _) = Asked::new(BODIES, "helical", &[&set[..], &[("bore", "5 mm")]].concat()).only();
+        let (spur, gauges) = (Spur { module: 3.0, teeth, shift }, &body.gauges);
+        let (_, form) = spur.undercut();
+        let [root, tip] = [spur.radius() - (1.25 - shift) * 3.0, spur.radius() + (1.0 + shift) * 3.0];
+        assert!(form - root > tip - form, "the fillet is the deeper one: {root} {form} {tip}");
+        let near = |found: f64, exact: f64, what: &str| {
+            assert!((found - exact).abs() < 2e-7, "{what} of {teeth} teeth, shift {shift}: {found}, not {exact}");
+        };
+        gauges.form_diameters_mm.expect("round").iter().for_each(|found| near(*found, 2.0 * form, "form diameter"));
+        let base = spur.radius() * ALPHA.cos();
+        for span in &gauges.spans {
+            let across = (f64::from(span.teeth) - 0.5) * PI + teeth * inv(ALPHA);
+            near(span.width_mm, 3.0 * ALPHA.cos() * across + 6.0 * shift * ALPHA.sin(), "span");
+            span.diameters_mm.iter().for_each(|at| assert!(0.5 * at > form, "touches the flank: {span:?}"));
+        }
+        let touching = |count: f64| {
+            base.hypot(
+                0.5 * (3.0 * ALPHA.cos() * ((count - 0.5) * PI + teeth * inv(ALPHA)) + 6.0 * shift * ALPHA.sin()),
+            )
+        };
+        let wanted = (1..=7).filter(|k| (form..tip).contains(&touching(f64::from(*k)))).count();
+        assert_eq!(gauges.spans.len(), wanted, "{:?}", gauges.spans);
+        let balls = gauges.balls.as_ref().expect("one touches");
+        let half = (FRAC_PI_2 + 2.0 * shift * ALPHA.tan()) / teeth;
+        let wanted = inv(ALPHA) + balls.ball_mm / (3.0 * teeth * ALPHA.cos()) + half - PI / teeth;
+        near(balls.over_balls_mm, 2.0 * base / arcinv(wanted).cos() + balls.ball_mm, "balls");
+    }
 }
 
 /// Flanks of neighbouring spaces meet where the tooth's thickness by the involute is nothing; the space is open from there on.
@@ -327,6 +444,21 @@ fn what_bounds_no_body_is_told_with_its_number() {
     assert!(told.contains("is one surface"), "{told}");
     let told = Asked::new(BODIES, "helical", &[("bore", "35 mm")]).refused();
     assert!(told.contains("mm through `bore` of its outline"), "{told}");
+    // the root's own radius: 3 mm times 12 / cos 15 deg less 1.05
+    let root = 36.0 / f64::to_radians(15.0).cos() - 3.15;
+    for bore in [root, root + 1e-7] {
+        let told = Asked::new(BODIES, "helical", &[("bore", &*format!("{bore} mm"))]).refused();
+        assert!(told.contains("reach `bore`") && told.contains("34.1199 mm from the axis: no wall"), "{told}");
+    }
+    // the rack is shorter than half the face
+    let short = Some(("half_width: 2 * face_width", "half_width: 8 mm"));
+    let told = Asked { changed: short, ..Asked::new(BODIES, "helical", &[("helix_angle", "0 deg")]) }.refused();
+    assert!(
+        told.contains("`left` ends are beyond the ranges of their unknowns, `v`") && told.contains(" by 2.0000 mm"),
+        "{told}"
+    );
+    let told = with("[left, left_fillet, root, right_fillet]").refused();
+    assert!(told.contains("`right_fillet` does not reach `tip`") && told.contains("`theta` by "), "{told}");
 }
 
 /// A cutter's rounding makes the fillet; left out, it is a gap.

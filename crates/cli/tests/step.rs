@@ -145,15 +145,20 @@ fn opencascade_finds_the_arcs_of_a_blank() {
     let to = out.to_str().expect("a plain path");
     let line = "front = line(from: [front, tip_radius], to: [front, reference_radius / 2])";
     let bore = "from: [front, reference_radius / 2]";
-    let whole =
-        self_contained(&["machines/rack_generating", "tools/rack", "hobbing/spur_gear", "bodies/spur_gear_body"]);
+    let whole = self_contained(&[
+        "machines/hobbing_6axis",
+        "machines/rack_generating",
+        "tools/rack",
+        "hobbing/spur_gear",
+        "bodies/spur_gear_body",
+    ]);
     assert!(whole.contains(line));
     // where the arc ends along the axis, and its radius: the tip is at 39.6 mm from the axis and 10 mm before the middle, the bore at 18 mm
     let arcs = [
         ("30 mm - sqrt(hypot(39.6 mm, 40 mm)^2 - (18 mm)^2)", "hypot(39.6 mm, 40 mm)", "SPHERICAL_SURFACE", "gear"),
-        ("front", "15 mm", "=TOROIDAL_SURFACE", "gear"),
-        ("front", "-15 mm", "=TOROIDAL_SURFACE", "gear"),
-        ("front", "-15 mm", "=TOROIDAL_SURFACE", "tooth"),
+        ("front", "20 mm", "=TOROIDAL_SURFACE", "gear"),
+        ("front", "-20 mm", "=TOROIDAL_SURFACE", "gear"),
+        ("front", "-20 mm", "=TOROIDAL_SURFACE", "tooth"),
         ("front", "60 mm", "DEGENERATE_TOROIDAL_SURFACE", "gear"),
         ("front", "60 mm", "DEGENERATE_TOROIDAL_SURFACE", "space"),
         ("7.5 mm", "-60 mm", "DEGENERATE_TOROIDAL_SURFACE", "gear"),

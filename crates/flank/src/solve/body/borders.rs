@@ -236,7 +236,7 @@ fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Op
 /// Neighbours whose common line is not found.
 fn lost(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Failure {
     let ends = |piece: &&Piece<'_, '_>| {
-        let beyond = piece.beyond_ends(blank, &ALONG)?;
+        let beyond = piece.beyond_ends(blank)?;
         Some(format!(": points where `{}` ends are {beyond}", piece.surface.name))
     };
     let why = pieces.iter().find_map(ends).unwrap_or_default();

@@ -233,11 +233,14 @@ impl<'j, 'g> Piece<'j, 'g> {
     }
 
     /// What keeps the lines on which its rows end from running all along the space, if that is a range.
-    pub(crate) fn beyond_ends(&self, blank: &Blank, along: &[f64]) -> Option<String> {
+    pub(crate) fn beyond_ends(&self, blank: &Blank) -> Option<String> {
         let unknown = self.across_tool(blank)?;
         let Range { low, high } = self.bound().ranges()[unknown];
         let ends = [low, high].into_iter().filter(|value| value.is_finite());
-        ends.map(|value| self.on_line((unknown, value), blank, along)).find_map(|points| self.beyond(&points))
+        // from the middle of what is known to both ends
+        let known = self.known.iter().map(|point| self.along_of(blank, point)).sum::<f64>() / self.known.len() as f64;
+        let along = [0.0, known, 1.0];
+        ends.map(|value| self.on_line((unknown, value), blank, &along)).find_map(|points| self.beyond(&points))
     }
 
     /// How far unknowns would have to go beyond their ranges to reach points; nothing where all of them are within.
@@ -252,7 +255,7 @@ impl<'j, 'g> Piece<'j, 'g> {
         let each = unknowns.iter().zip(most).filter(|(_, by)| *by > 0.0);
         let each: Vec<String> =
             each.map(|(of, by)| format!("`{}` by {}", of.name, units::text(of.dimension, by, 4))).collect();
-        (!each.is_empty()).then(|| format!("beyond ranges, {}", each.join(", ")))
+        (!each.is_empty()).then(|| format!("beyond the ranges of their unknowns, {}", each.join(", ")))
     }
 
     /// The values of an unknown at points of a line along the space; `None` where one is no point of the surface.
