@@ -8,6 +8,8 @@ mod pair;
 #[path = "mill/special.rs"]
 mod special;
 mod support;
+#[path = "mill/verified.rs"]
+mod verified;
 
 use std::path::Path;
 use std::process::Command;

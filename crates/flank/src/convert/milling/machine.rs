@@ -5,7 +5,9 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{Axis, Job, LawSource, Machine as JobMachine, Milling};
 use flank_expr::Expr;
 use flank_solver::{MillAxes, NotExplicit, PoseSeries};
+use nalgebra::{Matrix3, Vector3};
 
+use crate::convert::files::decimals;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
 
@@ -75,6 +77,13 @@ impl<'p, 'g> Machine<'p, 'g> {
     /// The same on the elbow on which these poses stay within the travels, and turn less.
     pub(super) fn on_best_elbow(self, passes: &[Vec<[f64; 6]>]) -> Machine<'p, 'g> {
         Machine { axes: self.axes.on_best_elbow(passes), ..self }
+    }
+
+    /// How far the words of an axis are rounded, mm or radians: half of the last decimal.
+    pub(super) fn rounding(&self, axis: usize) -> f64 {
+        let own = self.free[axis];
+        let half = 0.5 * 0.1_f64.powi(i32::from(decimals(own.dimension, &own.word)));
+        if self.axes.is_rotary(axis) { half.to_radians() } else { half }
     }
 
     /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.
@@ -162,7 +171,7 @@ impl FreeAxes {
         FreeAxes { elbow, ..self }
     }
 
-    fn rotary(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn rotary(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.is_rotary.len()).filter(|k| self.is_rotary(*k))
     }
 
@@ -202,13 +211,34 @@ impl FreeAxes {
     }
 
     /// The cutter while its tip goes straight and the rotary axes turn evenly: tool-centre control.
-    pub(super) fn straight_tip(&self, (from, to): (&[f64], &[f64]), (tip, end): (&[f64], &[f64])) -> PoseSeries {
+    pub(super) fn straight_tip(&self, from: &[f64], to: &[f64]) -> PoseSeries {
+        let [tip, end] = [from, to].map(|axes| self.closed.pose(axes));
         PoseSeries::sampled(POINTS_OF_BLOCK, |share| {
             let at: Vec<f64> = from.iter().zip(to).map(|(a, b)| a + share * (b - a)).collect();
             let mut pose = self.closed.pose(&at);
             (0..3).for_each(|k| pose[k] = tip[k] + share * (end[k] - tip[k]));
             pose
         })
+    }
+
+    /// The axes with linear ones that bring the tip to a place.
+    pub(super) fn with_tip(&self, axes: &[f64], tip: [f64; 3]) -> Vec<f64> {
+        let linear: Vec<usize> = (0..axes.len()).filter(|axis| !self.is_rotary[*axis]).collect();
+        let at = |axes: &[f64]| {
+            let [x, y, z, ..] = self.closed.pose(axes);
+            Vector3::new(x, y, z)
+        };
+        let here = at(axes);
+        let mut found = axes.to_vec();
+        let shift = |axis: &usize| {
+            let mut moved = axes.to_vec();
+            moved[*axis] += 1.0;
+            at(&moved) - here
+        };
+        let shifts = Matrix3::from_columns(&linear.iter().map(shift).collect::<Vec<_>>());
+        let by = shifts.lu().solve(&(Vector3::from(tip) - here)).expect("the linear axes of closed forms span space");
+        linear.iter().zip(by.iter()).for_each(|(axis, by)| found[*axis] += by);
+        found
     }
 
     /// Where the axes bring the cutter.

@@ -1,10 +1,12 @@
 //! `flank mill`
 
+mod block;
 pub(crate) mod clamp;
 mod cutter;
 pub(crate) mod drawn;
 mod files;
 pub(crate) mod flank;
+mod iso;
 mod klartext;
 mod left;
 mod machine;

@@ -1,28 +1,40 @@
-//! NC programs read as motions of a machine's cutter.
+//! NC programs read as moves of a machine's axes.
 
 use std::collections::HashMap;
+use std::f64::consts::TAU;
 use std::fmt;
 
 use flank_solver::PoseSeries;
 
-use super::klartext;
-use super::machine::Machine;
+use super::block::{Block, Motion, Word};
+use super::machine::{FreeAxes, Machine};
+use super::{iso, klartext};
+use crate::project::units;
 
-/// Letters of axis words.
-const AXIS_LETTERS: &str = "ABCUVWXYZ";
-
-/// A program as the cutter's blocks that cut, in the frame of the work.
+/// A program as moves, in order.
 pub(super) struct Program {
-    pub(super) blocks: Vec<PoseSeries>,
-    /// Whether one of them has the tip in the work in its words.
-    pub(super) tool_centre_control: bool,
+    pub(super) moves: Vec<Move>,
+    /// Whether it says that it ends.
+    pub(super) has_end: bool,
 }
 
-impl Program {
-    fn push(&mut self, block: Option<PoseSeries>, state: &State<'_, '_, '_>) {
-        let Some(block) = block else { return };
-        self.tool_centre_control |= state.has_tip_control;
-        self.blocks.push(block);
+/// A block from where all axes are known to where they are.
+pub(super) struct Move {
+    pub(super) line: usize,
+    pub(super) motion: Motion,
+    /// The tip goes straight, else all axes do.
+    pub(super) has_tip_control: bool,
+    from: Vec<f64>,
+    to: Vec<f64>,
+}
+
+impl Move {
+    /// The cutter in the frame of the work.
+    pub(super) fn series(&self, axes: &FreeAxes) -> PoseSeries {
+        match self.has_tip_control {
+            true => axes.straight_tip(&self.from, &self.to),
+            false => axes.straight(&self.from, &self.to),
+        }
     }
 }
 
@@ -38,21 +50,15 @@ impl fmt::Display for Fault {
     }
 }
 
-/// A word of a block.
-pub(super) struct Word {
-    pub(super) address: String,
-    pub(super) value: f64,
-}
-
 /// What a program has said so far.
 struct State<'m, 'p, 'g> {
     machine: &'m Machine<'p, 'g>,
-    /// Of each axis its address, where it stands (mm or radians), and whether that was said.
+    /// Of each axis its address, and where it stands (mm or radians), if that was said.
     addresses: HashMap<String, usize>,
     axes: Vec<Option<f64>>,
     /// The tip in the work, under tool-centre control.
     tip: [Option<f64>; 3],
-    is_cutting: bool,
+    motion: Option<Motion>,
     has_tip_control: bool,
     /// mm per unit of lengths.
     unit: f64,
@@ -60,161 +66,97 @@ struct State<'m, 'p, 'g> {
 
 /// Reads a program in the words of Fanuc, Siemens 840D, LinuxCNC or Heidenhain's Klartext, which its first block tells.
 pub(super) fn read(text: &str, machine: &Machine<'_, '_>) -> Result<Program, Fault> {
-    let addresses = machine.free.iter().enumerate().map(|(k, axis)| (axis.word.address.clone(), k)).collect();
-    let mut state = State {
-        machine,
-        addresses,
-        axes: vec![None; machine.free.len()],
-        tip: [None; 3],
-        is_cutting: false,
-        has_tip_control: false,
-        unit: 1.0,
-    };
-    let mut program = Program { blocks: Vec::new(), tool_centre_control: false };
+    let mut state = State::new(machine);
+    let mut program = Program { moves: Vec::new(), has_end: false };
     let is_klartext = text.lines().any(klartext::begins);
     for (number, line) in text.lines().enumerate() {
-        let fault = |message: String| Fault { line: number + 1, message };
-        let plain = without_remarks(line);
-        let plain = plain.trim();
-        if plain.is_empty() || plain == "%" || plain.starts_with(['O', ':']) {
-            continue;
-        }
-        if is_klartext {
-            match klartext::line(plain).map_err(fault)? {
-                klartext::Line::End => break,
-                klartext::Line::Nothing => {}
-                klartext::Line::Unit(unit) => state.unit = unit,
-                klartext::Line::TipControl(on) => state.tip_control(on),
-                klartext::Line::Elsewhere(axes) => state.forget(&axes),
-                klartext::Line::Block(words) => program.push(state.block(&words).map_err(fault)?, &state),
-            }
-            continue;
-        }
-        for (word, on) in [("TRAORI", true), ("TRAFOOF", false)] {
-            if plain.contains(word) {
-                state.tip_control(on);
-            }
-        }
-        if plain.contains("TRAORI") || plain.contains("TRAFOOF") {
-            continue;
-        }
-        let words = words(&plain.replace("FNORM", "")).map_err(fault)?;
-        if words.iter().any(|word| word.address == "M" && (word.value == 30.0 || word.value == 2.0)) {
+        let line_number = number + 1;
+        let fault = |message: String| Fault { line: line_number, message };
+        let capitals = line.trim().to_ascii_uppercase();
+        let block = if is_klartext { klartext::line(&capitals) } else { iso::line(&capitals) }.map_err(fault)?;
+        program.moves.extend(state.follow(&block, line_number).map_err(fault)?);
+        if block.ends {
+            program.has_end = !is_klartext || text.lines().any(klartext::ends);
             break;
         }
-        program.push(state.block(&words).map_err(fault)?, &state);
     }
-    if program.blocks.is_empty() {
+    if !program.moves.iter().any(|one| one.motion == Motion::Straight) {
         return Err(Fault { line: text.lines().count(), message: "the program has no cutting block".to_string() });
     }
     Ok(program)
 }
 
-/// A line without remarks.
-fn without_remarks(line: &str) -> String {
-    let line = line.split(';').next().unwrap_or_default();
-    let (mut depth, mut out) = (0, String::new());
-    for letter in line.chars() {
-        match letter {
-            '(' => depth += 1,
-            ')' => depth = 0,
-            _ if depth == 0 => out.push(letter.to_ascii_uppercase()),
-            _ => {}
+impl<'m, 'p, 'g> State<'m, 'p, 'g> {
+    fn new(machine: &'m Machine<'p, 'g>) -> State<'m, 'p, 'g> {
+        State {
+            machine,
+            addresses: machine.free.iter().enumerate().map(|(k, axis)| (axis.word.address.clone(), k)).collect(),
+            axes: vec![None; machine.free.len()],
+            tip: [None; 3],
+            motion: None,
+            has_tip_control: false,
+            unit: 1.0,
         }
     }
-    out
-}
 
-fn words(line: &str) -> Result<Vec<Word>, String> {
-    let letters: Vec<char> = line.chars().filter(|letter| !letter.is_whitespace()).collect();
-    let (mut at, mut words) = (0, Vec::new());
-    while at < letters.len() {
-        let mut address = letters[at].to_string();
-        if !letters[at].is_ascii_alphabetic() {
-            return Err(format!("`{}` begins no word", letters[at]));
+    /// A block: where it goes from where, if both are known.
+    fn follow(&mut self, block: &Block, line: usize) -> Result<Option<Move>, String> {
+        self.unit = block.unit.unwrap_or(self.unit);
+        self.motion = block.motion.or(self.motion);
+        if let Some(on) = block.tip_control {
+            self.tip_control(on);
         }
-        at += 1;
-        // an address with a number behind has a sign of equality: B1=12
-        let digits = letters[at..].iter().take_while(|letter| letter.is_ascii_digit()).count();
-        if letters.get(at + digits) == Some(&'=') {
-            address.extend(&letters[at..at + digits]);
-            at += digits + 1;
+        if block.is_elsewhere {
+            self.forget(&block.goes_to);
+            return Ok(None);
         }
-        let is_part = |letter: &&char| letter.is_ascii_digit() || matches!(letter, '.' | '-' | '+');
-        let length = letters[at..].iter().take_while(is_part).count();
-        let number: String = letters[at..at + length].iter().collect();
-        let value = number.parse().map_err(|_| format!("`{address}{number}` has no number"))?;
-        words.push(Word { address, value });
-        at += length;
+        if block.goes_to.is_empty() {
+            return Ok(None);
+        }
+        let before = self.known();
+        block.goes_to.iter().try_for_each(|word| self.axis(word))?;
+        if self.has_tip_control {
+            self.follow_tip();
+        }
+        self.within_travels()?;
+        let motion = self.motion.ok_or("goes before the program says how: G0 or G1")?;
+        match (before, self.known()) {
+            (Some(from), Some(to)) => Ok(Some(Move { line, motion, has_tip_control: self.has_tip_control, from, to })),
+            // a rapid from an unknown place is how a program begins
+            _ if motion == Motion::Rapid => Ok(None),
+            _ => Err("cuts before each axis has its position".to_string()),
+        }
     }
-    Ok(words)
-}
 
-impl State<'_, '_, '_> {
+    /// Where all axes stand, if that was said of each.
+    fn known(&self) -> Option<Vec<f64>> {
+        self.axes.iter().copied().collect()
+    }
+
     fn tip_control(&mut self, on: bool) {
         self.has_tip_control = on;
-        self.tip = [None; 3];
+        let pose = self.known().map(|axes| self.machine.axes.pose(&axes));
+        self.tip = pose.map_or([None; 3], |pose| [0, 1, 2].map(|k| Some(pose[k])));
+    }
+
+    /// The linear axes follow the tip.
+    fn follow_tip(&mut self) {
+        let free = &self.machine.axes;
+        let is_turned = self.axes.iter().enumerate().all(|(k, at)| at.is_some() || !free.is_rotary(k));
+        let from: Vec<f64> = self.axes.iter().map(|at| at.unwrap_or(0.0)).collect();
+        let tip = if let [Some(x), Some(y), Some(z)] = self.tip { Some([x, y, z]) } else { None };
+        let found = tip.filter(|_| is_turned).map(|tip| free.with_tip(&from, tip));
+        for axis in (0..from.len()).filter(|axis| !free.is_rotary(*axis)) {
+            self.axes[axis] = found.as_ref().map(|found| found[axis]);
+        }
     }
 
     /// Axes went where the program does not say in the work's coordinates.
-    fn forget(&mut self, addresses: &[String]) {
-        for axis in addresses.iter().filter_map(|address| self.addresses.get(address)) {
+    fn forget(&mut self, words: &[Word]) {
+        for axis in words.iter().filter_map(|word| self.addresses.get(&word.address)) {
             self.axes[*axis] = None;
         }
         self.tip = [None; 3];
-    }
-
-    /// A block: where it goes, if it cuts.
-    fn block(&mut self, words: &[Word]) -> Result<Option<PoseSeries>, String> {
-        for word in words.iter().filter(|word| word.address == "G") {
-            self.preparatory(word.value)?;
-        }
-        for word in words.iter().filter(|word| word.address == "M") {
-            match word.value as i64 {
-                428 | 128 => self.tip_control(true),
-                429 | 129 => self.tip_control(false),
-                _ => {}
-            }
-        }
-        let (axes, tip) = (self.axes.clone(), self.tip);
-        let mut moves = false;
-        for word in words {
-            let is_axis = word.address.starts_with(|first: char| AXIS_LETTERS.contains(first));
-            if is_axis || self.addresses.contains_key(&word.address) {
-                self.axis(word)?;
-                moves = true;
-            }
-        }
-        if !moves {
-            return Ok(None);
-        }
-        // where the axes came from is known only if that was said
-        let first = if self.has_tip_control && tip.iter().any(Option::is_none) { None } else { Some(()) };
-        let Some(()) = first.filter(|()| self.is_cutting) else { return Ok(None) };
-        let known = |all: &[Option<f64>]| all.iter().copied().collect::<Option<Vec<f64>>>();
-        let (Some(from), Some(to)) = (known(&axes), known(&self.axes)) else {
-            return Err("cuts before each axis has its position".to_string());
-        };
-        if !self.has_tip_control {
-            return Ok(Some(self.machine.axes.straight(&from, &to)));
-        }
-        let (Some(a), Some(b)) = (known(&tip), known(&self.tip)) else { return Ok(None) };
-        Ok(Some(self.machine.axes.straight_tip((&from, &to), (&a, &b))))
-    }
-
-    fn preparatory(&mut self, value: f64) -> Result<(), String> {
-        match (value * 10.0).round() as i64 {
-            0 => self.is_cutting = false,
-            10 => self.is_cutting = true,
-            20 | 30 => return Err(format!("G{value} is a circle: only straight blocks are followed")),
-            910 => return Err("G91 counts from where the axes stand: only absolute positions are followed".to_string()),
-            200 | 700 => self.unit = 25.4,
-            210 | 710 | 7100 => self.unit = 1.0,
-            434 => self.tip_control(true),
-            490 => self.tip_control(false),
-            _ => {}
-        }
-        Ok(())
     }
 
     fn axis(&mut self, word: &Word) -> Result<(), String> {
@@ -233,10 +175,32 @@ impl State<'_, '_, '_> {
             ));
         };
         let own = &self.machine.free[axis].word;
-        let programmed =
-            if self.machine.axes.is_rotary(axis) { word.value.to_radians() } else { word.value * self.unit };
+        let is_rotary = self.machine.axes.is_rotary(axis);
+        let programmed = if is_rotary { word.value.to_radians() } else { word.value * self.unit };
         let position = if own.reversed { own.offset - programmed } else { programmed - own.offset };
-        self.axes[axis] = Some(position);
+        let before = self.axes[axis].filter(|_| word.by_shorter_way && is_rotary);
+        let turns = before.map_or(0.0, |before| ((before - position) / TAU).round());
+        self.axes[axis] = Some(position + TAU * turns);
+        Ok(())
+    }
+
+    /// That no axis is beyond its travel by more than its words are rounded.
+    fn within_travels(&self) -> Result<(), String> {
+        for (k, (axis, at)) in self.machine.free.iter().zip(&self.axes).enumerate() {
+            let (Some((low, high)), Some(at)) = (axis.travel, *at) else { continue };
+            let rounding = self.machine.rounding(k);
+            if at < low - rounding || at > high + rounding {
+                let text = |value: f64| units::text(axis.dimension, value, 3);
+                return Err(format!(
+                    "{} goes beyond its travel: to {} as {} counts, and its travel is {} .. {}",
+                    axis.name,
+                    text(at),
+                    self.machine.machine.name,
+                    text(low),
+                    text(high)
+                ));
+            }
+        }
         Ok(())
     }
 }

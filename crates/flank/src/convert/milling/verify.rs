@@ -4,10 +4,11 @@ use std::path::Path;
 
 use flank_solver::SweptCutter;
 
+use super::block::Motion;
 use super::cutter::MillingCutter;
 use super::left::LeftMap;
 use super::machine::Machine;
-use super::program::{Program, read};
+use super::program::{Move, Program, read};
 use super::result::VerifiedProgram;
 use super::target::{Fields, Target};
 use crate::project::failure::Failure;
@@ -33,11 +34,14 @@ pub(super) fn program(
     (fields, counts): (&Fields, [usize; 2]),
 ) -> Result<ReadProgram, Failure> {
     let shown = shown_path(path);
-    let text =
-        std::fs::read_to_string(path).map_err(|error| Failure::Input(format!("`{shown}` cannot be read: {error}")))?;
-    let Program { blocks, tool_centre_control } =
-        read(&text, machine).map_err(|fault| Failure::Input(format!("{shown}:{fault}")))?;
-    let count = blocks.len();
+    let bytes = std::fs::read(path).map_err(|error| Failure::Input(format!("`{shown}` cannot be read: {error}")))?;
+    // remarks are in whatever letters a control has
+    let text = String::from_utf8_lossy(&bytes);
+    let Program { moves, .. } = read(&text, machine).map_err(|fault| Failure::Input(format!("{shown}:{fault}")))?;
+    let cuts: Vec<&Move> = moves.iter().filter(|one| one.motion == Motion::Straight).collect();
+    let tool_centre_control = cuts.iter().any(|cut| cut.has_tip_control);
+    let count = cuts.len();
+    let blocks = cuts.iter().map(|cut| cut.series(&machine.axes)).collect();
     let map = LeftMap::of_cutter(target, fields, &SweptCutter::of_blocks(blocks, &cutter.cutting), counts);
     Ok(ReadProgram { file: shown, blocks: count, tool_centre_control, map })
 }

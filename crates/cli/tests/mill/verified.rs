@@ -1,0 +1,158 @@
+//! Programs read back: what is not understood is told with its line, and what a program does not do as the milling says is told, too.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value;
+
+use super::support::{folder, written};
+use super::{AREA, BALL, job, json, mill, text_of};
+
+/// A control, and what its programs are called.
+type Control = (&'static str, &'static str);
+/// A line, and what is told of it.
+type Change = (&'static str, &'static str);
+
+/// Few passes and positions: what is read is the same.
+fn small() -> String {
+    let area = AREA.replace("0.55 by 9", "0.46 by 2").replace("0.8 by 9", "0.8 by 5");
+    job("work_z: 60 mm", BALL, &format!("{area} lead 5 deg\n tilt 70 deg\n"))
+}
+
+/// A program of a control, and its lines.
+fn program(spec: &str, out: &Path, (control, extension): Control, arguments: &[&str]) -> (PathBuf, Vec<String>) {
+    json(spec, out, &[&["--nc", control], arguments].concat());
+    let file = out.join(format!("milled.part.{extension}"));
+    let lines = text_of(&file).lines().map(str::to_string).collect();
+    (file, lines)
+}
+
+/// The place of a cutting block after some.
+fn cut(lines: &[String], after: usize) -> usize {
+    let is_cut = |line: &String| line.contains("G01 X") || line.starts_with("L X") && !line.contains("FMAX");
+    lines.iter().enumerate().filter(|(_, line)| is_cut(line)).nth(after).expect("it cuts").0
+}
+
+/// Lines with another before one of them.
+fn with(lines: &[String], before: usize, line: &str) -> String {
+    [&lines[..before], &[line.to_string()], &lines[before..]].concat().join("\n")
+}
+
+/// Exit code and the document.
+fn verified(spec: &str, out: &Path, file: &str, arguments: &[&str]) -> (i32, Value) {
+    let (code, told, errors) = mill(spec, out, &[&["--verify", file, "--json"], arguments].concat());
+    (code, serde_json::from_str(&told).unwrap_or_else(|_| panic!("JSON, not {errors}")))
+}
+
+/// Words that change where the cutter goes, and are not followed.
+#[test]
+fn words_that_change_the_result_are_errors_with_their_line() {
+    let out = folder("mill_changed");
+    let spec = written(&out, "milled.chain", &small());
+    let cases: [(Control, &[Change]); 3] = [
+        (
+            ("linuxcnc", "ngc"),
+            &[
+                ("G92 X0 Y0", "G92 moves the zero"),
+                ("G52 X5.", "G52 moves the zero"),
+                ("G10 L2 P1 X5. Y5.", "G10 moves the zero"),
+                ("G55", "G55 counts from another zero than G54"),
+                ("G68.2 X0 Y0 Z0 I10 J20 K30", "G68.2 turns, scales or mirrors"),
+                ("G51.1 X0", "G51.1 turns, scales or mirrors"),
+                ("G41 D1", "G41 puts the cutter beside its way"),
+                ("G43 H1", "G43 adds a tool length"),
+                ("G28 Z0", "G28 goes to a point of the machine by way of its words"),
+                ("G65 P9000 X5.", "G65 calls a macro"),
+                ("G81 X0 Y0 Z-5 R2 F100", "G81 is a cycle"),
+                ("G5.2 X1 Y1", "G5.2 is a curve"),
+                ("G01 X0 R2", "mill has no word `R`"),
+                ("M98 P7777", "M98 calls or ends a subprogram"),
+                ("M61 Q2", "M61 is not followed"),
+                ("O100 CALL", "`CALL` is not followed"),
+                ("/ G01 X1", "`/` marks a block"),
+                ("#100 = 5", "`#` begins a variable"),
+                ("G01 X1 X2", "`X` stands twice in one block"),
+                ("G0 G1 X1", "G0 and G1 stand in one block"),
+                ("G01 A-185", "A goes beyond its travel: to 185.000 deg as mill counts"),
+            ],
+        ),
+        (
+            ("siemens", "mpf"),
+            &[
+                ("L100 P3", "L100 calls a subprogram"),
+                ("T1 D1", "D1 adds to the tool"),
+                ("TRANS X10", "`TRANS` is not followed"),
+                ("CYCLE800(0,\"TC1\",0,57,0,0,0,0,30,0,0,0,0,1)", "`CYCLE800` is not followed"),
+                ("G500", "G500 counts from another zero"),
+                ("X=IC(5)", "`X=IC(5)` counts from where the axis stands"),
+                ("C=ACP(5)", "`C=ACP(5)` is not followed"),
+                ("G01 A3=0.1", "mill has no word `A3`"),
+            ],
+        ),
+        (
+            ("heidenhain", "h"),
+            &[
+                ("TOOL CALL 1 Z DL+0.5 DR+0.2", "`DL+0.5` adds to the tool"),
+                ("L X+1 X+2 F100", "`X` stands twice in one block"),
+                ("M99", "M99 calls or ends a subprogram"),
+                ("M126", "M126 is not followed"),
+            ],
+        ),
+    ];
+    for (control, changes) in cases {
+        let (_, lines) = program(&spec, &out, control, &[]);
+        let place = cut(&lines, 1);
+        for (line, part) in changes {
+            let file = written(&out, "changed.nc", &with(&lines, place, line));
+            let (code, _, told) = mill(&spec, &out, &["--verify", &file]);
+            assert_eq!(code, 1, "{line}: {told}");
+            assert!(told.contains(&format!(":{}: {part}", place + 1)), "{part} in {told}");
+        }
+    }
+    // positions of the machine leave open where the axis is in the work
+    let (_, lines) = program(&spec, &out, ("linuxcnc", "ngc"), &[]);
+    let place = cut(&lines, 1);
+    let changed = with(&lines, place, "G53 G0 Z400");
+    let (code, _, told) = mill(&spec, &out, &["--verify", &written(&out, "changed.nc", &changed)]);
+    assert_eq!(code, 1, "{told}");
+    assert!(told.contains(&format!(":{}: cuts before each axis has its position", place + 2)), "{told}");
+}
+
+/// A block with A as a position and C a whole turn off, to which the shorter way leads.
+fn by_other_words(block: &str) -> String {
+    let word = |word: &str| match (word.strip_prefix('A'), word.strip_prefix('C')) {
+        (Some(at), _) => format!("A=AC({at})"),
+        (_, Some(at)) => format!("C=DC({})", at.parse::<f64>().expect("a position") + 360.0),
+        _ => word.to_string(),
+    };
+    block.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
+/// What controls write every day and the cutter does not notice: the same heights as without.
+#[test]
+fn everyday_words_are_followed() {
+    let out = folder("mill_everyday");
+    let spec = written(&out, "milled.chain", &small());
+    let (own, lines) = program(&spec, &out, ("siemens", "mpf"), &[]);
+    let (code, expected) = verified(&spec, &out, own.to_str().unwrap(), &[]);
+    assert_eq!(code, 0);
+    let mut theirs = lines.clone();
+    let place = cut(&theirs, 1);
+    theirs[place] = by_other_words(&theirs[place]);
+    assert!(theirs[place].contains("C=DC(") && theirs[place].contains("A=AC("), "{}", theirs[place]);
+    let words = "G54 G642 ADIS=0.01\nT=\"BALL 2\"\nG4 F0.5\nSOFT FFWON\nMSG(\"pass; X1 (first)\")\nCYCLE832(0.01,1,1)\n; fr\u{e4}sen";
+    let text = with(&theirs, place, words);
+    // remarks in the letters of an old control
+    let bytes: Vec<u8> = text.chars().map(|letter| u8::try_from(u32::from(letter)).expect("Latin-1")).collect();
+    let file = out.join("theirs.mpf");
+    std::fs::write(&file, bytes).unwrap();
+    let (code, found) = verified(&spec, &out, file.to_str().unwrap(), &[]);
+    assert_eq!(code, 0, "{found}");
+    for part in ["blocks", "untouched"] {
+        assert_eq!(found["verified"][part], expected["verified"][part], "{part}");
+    }
+    let height = |of: &Value, k: usize| of["verified"]["left"][k]["height_um"].as_f64().expect("a height");
+    for k in 0..2 {
+        // another turn of C is rounded otherwise
+        assert!((height(&found, k) - height(&expected, k)).abs() < 1e-6, "{k}");
+    }
+}
