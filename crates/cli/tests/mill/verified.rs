@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::support::{folder, written};
-use super::{AREA, BALL, job, json, mill, text_of};
+use super::{AREA, BALL, job, json, mill, sound, text_of};
 
 /// A control, and what its programs are called.
 type Control = (&'static str, &'static str);
@@ -155,4 +155,64 @@ fn everyday_words_are_followed() {
         // another turn of C is rounded otherwise
         assert!((height(&found, k) - height(&expected, k)).abs() < 1e-6, "{k}");
     }
+}
+
+/// A program that is cut off, or has no end: exit code 3 and what it is.
+#[test]
+fn what_a_program_does_not_do_is_told() {
+    let out = folder("mill_not_done");
+    let spec = written(&out, "milled.chain", &sound());
+    let (_, lines) = program(&spec, &out, ("linuxcnc", "ngc"), &[]);
+    let (_, klartext) = program(&spec, &out, ("heidenhain", "h"), &[]);
+    let cases: [(String, &[&str]); 3] = [
+        (
+            lines[..lines.len() / 2].join("\n"),
+            &["not_milled", "does not say that it ends", " of 465 points of concave"],
+        ),
+        (lines.join("\n").replace("M30", ""), &["not_milled", "does not say that it ends", "it may be cut off"]),
+        (klartext.join("\n").replace("END PGM FLANK MM", ""), &["not_milled", "does not say that it ends"]),
+    ];
+    for (text, parts) in cases {
+        let file = written(&out, "theirs.nc", &text);
+        let (code, found) = verified(&spec, &out, &file, &[]);
+        let told = found["not_done"].to_string();
+        assert_eq!(code, 3, "{told}");
+        for part in parts {
+            assert!(told.contains(part), "{part} in {told}");
+        }
+    }
+}
+
+/// Half a millimetre against the normal and back, with feed and as a rapid: as deep as that, with its line, and in the map.
+#[test]
+fn what_goes_through_the_flank_is_told() {
+    let out = folder("mill_dive");
+    let spec = written(&out, "milled.chain", &sound());
+    let (own, lines) = program(&spec, &out, ("siemens", "mpf"), &["--tcp"]);
+    let csv = text_of(&out.join("milled.part.csv"));
+    let mut rows = csv.lines().filter(|line| !line.starts_with('#'));
+    let titles: Vec<&str> = rows.next().unwrap().split(',').collect();
+    let row: Vec<f64> = rows.nth(4 * 9 + 4).unwrap().split(',').map(|number| number.parse().unwrap()).collect();
+    let column =
+        |name: &str| row[titles.iter().position(|title| *title == name).unwrap_or_else(|| panic!("{titles:?}"))];
+    let [normal, tip] = [["nx", "ny", "nz"], ["tip_x", "tip_y", "tip_z"]].map(|names| names.map(column));
+    let to = |by: f64| {
+        let word = |k: usize| format!("{}{:.4}", ["X", "Y", "Z"][k], tip[k] - by * normal[k]);
+        [0, 1, 2].map(word).join(" ")
+    };
+    // each pass before has ten blocks: down, eight along, up; then down, and four along
+    let place = cut(&lines, 4 * 10 + 4);
+    assert!(lines[place].contains(&to(0.0)), "{} is at {}", lines[place], to(0.0));
+    let fine = ["--tcp", "--rows", "15", "--columns", "161"];
+    for (motion, what) in [("G00", "the rapid in line"), ("G01", "line")] {
+        let dive = with(&lines, place + 1, &format!("{motion} {}\n{motion} {}", to(0.5), to(0.0)));
+        let (code, found) = verified(&spec, &out, &written(&out, "dive.mpf", &dive), &fine);
+        let told = found["not_done"].to_string();
+        assert_eq!(code, 3, "{told}");
+        assert!(told.contains("too_deep") && told.contains(&format!("\"{what} {} of ", place + 2)), "{told}");
+        let depth = -found["verified"]["left"][1]["height_um"].as_f64().unwrap();
+        // a point of the map is within 0.06 mm of the contact, where a ball of 1 mm is 2 um higher
+        assert!((495.0..500.2).contains(&depth), "{motion}: {depth}");
+    }
+    assert_eq!(verified(&spec, &out, own.to_str().unwrap(), &fine).0, 0);
 }

@@ -54,6 +54,21 @@ impl LeftMap {
         self.places().reduce(|a, b| if b.height > a.height { b } else { a })
     }
 
+    /// Where least is left, and the number of the way that leaves it.
+    pub(super) fn deepest(&self) -> Option<(LeftAt, usize)> {
+        let ways = self.left.iter().flatten().map(|left| left.way);
+        self.places().zip(ways).reduce(|a, b| if b.0.height < a.0.height { b } else { a })
+    }
+
+    /// The same where another cutter cuts, too.
+    pub(super) fn cut_by(mut self, other: &LeftMap) -> LeftMap {
+        for (left, other) in self.left.iter_mut().zip(&other.left) {
+            let lower = other.filter(|other| other.height < left.map_or(0.0, |left| left.height));
+            *left = lower.or(*left);
+        }
+        self
+    }
+
     pub(super) fn untouched(&self) -> usize {
         self.left.iter().filter(|left| left.is_none()).count()
     }

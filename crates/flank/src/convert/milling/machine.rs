@@ -86,6 +86,17 @@ impl<'p, 'g> Machine<'p, 'g> {
         if self.axes.is_rotary(axis) { half.to_radians() } else { half }
     }
 
+    /// How far rounded words put a point of the cutter beside where it should be, at the most, mm; the point is no farther than `reach` from the tip.
+    pub(super) fn rounded(&self, axes: &[f64], reach: f64) -> f64 {
+        let here = self.axes.pose(axes);
+        let by_axis = |axis: usize| {
+            let mut moved = axes.to_vec();
+            moved[axis] += self.rounding(axis);
+            moved_by(&here, &self.axes.pose(&moved), reach)
+        };
+        (0..axes.len()).map(by_axis).sum()
+    }
+
     /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.
     pub(super) fn faults(
         &self,
@@ -146,6 +157,12 @@ impl<'p, 'g> Machine<'p, 'g> {
         }
         found
     }
+}
+
+/// How far a point of the cutter moves from one pose to another, at the most, mm; it is no farther than `reach` from the tip.
+pub(super) fn moved_by(from: &[f64; 6], to: &[f64; 6], reach: f64) -> f64 {
+    let turned = (3..6).map(|k| (from[k] - to[k]).powi(2)).sum::<f64>().sqrt();
+    super::distance(from, to) + reach * turned
 }
 
 impl FreeAxes {

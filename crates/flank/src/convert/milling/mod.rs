@@ -192,15 +192,16 @@ fn of_milling(
     session: Session<'_>,
 ) -> Result<MillResult, Failure> {
     let Worked { target, mut result, found } = worked(job, milling, request, session)?;
-    if let Some(Found { cutter, fields, milled, map, .. }) = &found {
+    if let Some(found @ Found { milled, map, .. }) = &found {
         let read = match (&request.verify, &milled.machine) {
-            (Some(path), Some(machine)) => Some(verify::program(path, &target, cutter, machine, (fields, map.counts))?),
+            (Some(path), Some(machine)) => Some(verify::program(path, &target, found, machine)?),
             _ => None,
         };
         result.verified = read.as_ref().map(|read| read.result(&target));
-        // what is not passed over is told, and hinders no program
+        // what is not passed over is told, and hinders no program; nor does what ails one that was read back
         let is_whole = result.not_done.is_empty();
         result.not_done.extend(map.missing(&target));
+        result.not_done.extend(read.iter().flat_map(|read| read.missed(&target)));
         let maps = (map, read.as_ref().map(|read| &read.map));
         result.files = files::write(job, &target, (milled, maps), (request, origin, session), is_whole)?;
     }

@@ -36,6 +36,27 @@ impl Move {
             false => axes.straight(&self.from, &self.to),
         }
     }
+
+    /// How far a rotary axis turns, at the most, radians.
+    pub(super) fn turn(&self, axes: &FreeAxes) -> f64 {
+        axes.rotary().map(|axis| (self.to[axis] - self.from[axis]).abs()).fold(0.0, f64::max)
+    }
+
+    /// Its first half and its second.
+    pub(super) fn halves(&self, axes: &FreeAxes) -> [Move; 2] {
+        let middle: Vec<f64> = self.from.iter().zip(&self.to).map(|(a, b)| 0.5 * (a + b)).collect();
+        let middle = if self.has_tip_control {
+            let [a, b] = [&self.from, &self.to].map(|row| axes.pose(row));
+            axes.with_tip(&middle, [0, 1, 2].map(|k| 0.5 * (a[k] + b[k])))
+        } else {
+            middle
+        };
+        [(&self.from, &middle), (&middle, &self.to)].map(|(from, to)| Move {
+            from: from.clone(),
+            to: to.clone(),
+            ..*self
+        })
+    }
 }
 
 /// What a program says that is not understood, with its line.
