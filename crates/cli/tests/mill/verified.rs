@@ -7,6 +7,11 @@ use serde_json::Value;
 use super::support::{folder, written};
 use super::{AREA, BALL, job, json, mill, sound, text_of};
 
+/// A control, and what its programs are called.
+type Control = (&'static str, &'static str);
+/// A line, and what is told of it.
+type Change = (&'static str, &'static str);
+
 /// Few passes and positions: what is read is the same.
 fn small() -> String {
     let area = AREA.replace("0.55 by 9", "0.46 by 2").replace("0.8 by 9", "0.8 by 5");
@@ -14,7 +19,7 @@ fn small() -> String {
 }
 
 /// A program of a control, and its lines.
-fn program(spec: &str, out: &Path, (control, extension): (&str, &str), arguments: &[&str]) -> (PathBuf, Vec<String>) {
+fn program(spec: &str, out: &Path, (control, extension): Control, arguments: &[&str]) -> (PathBuf, Vec<String>) {
     json(spec, out, &[&["--nc", control], arguments].concat());
     let file = out.join(format!("milled.part.{extension}"));
     let lines = text_of(&file).lines().map(str::to_string).collect();
@@ -43,7 +48,7 @@ fn verified(spec: &str, out: &Path, file: &str, arguments: &[&str]) -> (i32, Val
 fn words_that_change_the_result_are_errors_with_their_line() {
     let out = folder("mill_changed");
     let spec = written(&out, "milled.chain", &small());
-    let cases: [((&str, &str), &[(&str, &str)]); 3] = [
+    let cases: [(Control, &[Change]); 3] = [
         (
             ("linuxcnc", "ngc"),
             &[
@@ -112,6 +117,16 @@ fn words_that_change_the_result_are_errors_with_their_line() {
     assert!(told.contains(&format!(":{}: cuts before each axis has its position", place + 2)), "{told}");
 }
 
+/// A block with A as a position and C a whole turn off, to which the shorter way leads.
+fn by_other_words(block: &str) -> String {
+    let word = |word: &str| match (word.strip_prefix('A'), word.strip_prefix('C')) {
+        (Some(at), _) => format!("A=AC({at})"),
+        (_, Some(at)) => format!("C=DC({})", at.parse::<f64>().expect("a position") + 360.0),
+        _ => word.to_string(),
+    };
+    block.split(' ').map(word).collect::<Vec<_>>().join(" ")
+}
+
 /// What controls write every day and the cutter does not notice: the same heights as without.
 #[test]
 fn everyday_words_are_followed() {
@@ -122,15 +137,7 @@ fn everyday_words_are_followed() {
     assert_eq!(code, 0);
     let mut theirs = lines.clone();
     let place = cut(&theirs, 1);
-    // a whole turn off: the shorter way leads to the same place
-    let turned = |line: &str| {
-        let words = line.split(' ').map(|word| match word.strip_prefix('C').map(|at| at.parse::<f64>()) {
-            Some(Ok(at)) => format!("C=DC({})", at + 360.0),
-            _ => word.replace("A-", "A=AC(-"),
-        });
-        words.map(|word| if word.contains("AC(") { word + ")" } else { word }).collect::<Vec<_>>().join(" ")
-    };
-    theirs[place] = turned(&theirs[place]);
+    theirs[place] = by_other_words(&theirs[place]);
     assert!(theirs[place].contains("C=DC(") && theirs[place].contains("A=AC("), "{}", theirs[place]);
     let words = "G54 G642 ADIS=0.01\nT=\"BALL 2\"\nG4 F0.5\nSOFT FFWON\nMSG(\"pass; X1 (first)\")\nCYCLE832(0.01,1,1)\n; fr\u{e4}sen";
     let text = with(&theirs, place, words);
