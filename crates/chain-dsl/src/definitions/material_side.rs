@@ -9,8 +9,8 @@ use crate::diagnostics::source::Span;
 use crate::model::RangedVariable;
 use crate::values::context::Context;
 
-/// Points at which the side of the steel is looked at: a part that is a fiftieth of the surface has some of them.
-const LOOKS: usize = 200;
+/// Points at which the side of the steel is looked at: a part that is a twenty-fifth of the surface has some of them.
+const LOOKS: usize = 100;
 
 /// `|r_u × r_v|` below this is rounding: the points make no surface.
 const NO_AREA: f64 = 1e-12;
