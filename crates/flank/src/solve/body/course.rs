@@ -82,15 +82,16 @@ impl<'j, 'g> Course<'j, 'g> {
             meetings.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))
         };
         let line = |near: &SurfacePoint| Line { from: [near.unknowns[self.across], share], direction: [1.0, 0.0] };
+        let near: Vec<&SurfacePoint> = first.known.iter().collect();
         let found = self.found.borrow();
         if let Some((starts, before)) = starts(&found, share) {
             let off = |meeting: &Meeting| {
                 meeting.unknowns().iter().zip(&starts[0]).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
             };
             let on_line = |near: &[&SurfacePoint]| self.intersection.on_line(line(&before.first), &starts, near);
-            return least(on_line(&[&before.first]), &off);
+            // known points take up the line where it bends away from how it went
+            return least(on_line(&[&before.first]), &off).or_else(|| least(on_line(&near), &off));
         }
-        let near: Vec<&SurfacePoint> = first.known.iter().collect();
         let nearest = near.iter().min_by(|a, b| along(a).total_cmp(&along(b)))?;
         let known = known_pairs([first, second], blank, share);
         let off = |meeting: &Meeting| far(first, &meeting.first) + far(second, &meeting.second);
