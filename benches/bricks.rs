@@ -28,7 +28,7 @@ fn place(chart: usize, across: f64, along: f64) -> [f64; 3] {
         _ => (ROOT + across * (TIP - ROOT), half_angle(ROOT + across * (TIP - ROOT))),
     };
     let turned = angle + 0.2 * along;
-    [rho * turned.cos(), rho * turned.sin(), 20.0 * along]
+    [rho * turned.cos(), rho * turned.sin(), 20.0 * (1.0 - along)]
 }
 
 fn body() -> Body {
@@ -41,8 +41,8 @@ fn body() -> Body {
         center: None,
     };
     let outline = Outline::new((0..4).map(segment).collect());
-    // spaces begin at the front, where the share along is 0
-    let blank = Blank { outline, ends: [1, 0, 3] };
+    // with the material on the left, spaces begin at the back, where the share along is 0
+    let blank = Blank { outline, ends: [3, 0, 1] };
     let chart = |k: usize| {
         let points = Chart::shares(POINTS[0])
             .into_iter()

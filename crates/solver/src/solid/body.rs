@@ -66,7 +66,7 @@ impl Body {
     /// last row of the last chart is the first one of the first chart in the next space.
     ///
     /// # Panics
-    /// If there are neither the charts of one space nor those of all.
+    /// If there are neither the charts of one space nor those of all, or if the ends of the blank do not follow each other.
     ///
     /// # Errors
     /// If teeth are pointed below the tip, spaces overlap, or a space goes through the blank or leaves no wall of it.
@@ -77,6 +77,9 @@ impl Body {
         has_edge: bool,
     ) -> Result<Body, BodyFault> {
         assert!(spaces.len() == 1 || spaces.len() == teeth as usize, "one space, or all");
+        let [begin, tip, end] = blank.bounds();
+        let is_near = |from: [f64; 2], to: [f64; 2]| (from[0] - to[0]).hypot(from[1] - to[1]) <= ON_BLANK;
+        assert!(is_near(begin.to, tip.from) && is_near(tip.to, end.from), "begin, tip and end follow each other");
         for charts in &mut spaces {
             for k in 1..charts.len() {
                 let border = charts[k - 1].row(charts[k - 1].counts()[0] - 1).to_vec();
