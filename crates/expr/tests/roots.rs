@@ -277,11 +277,16 @@ fn what_rises_all_over_a_range_is_proven() {
     let graph = Graph::new();
     let (w, a) = (graph.variable("w"), graph.variable("a"));
     let cubic = w * w * w + w - a;
-    let found = root(cubic, (w, (0.0, 4.0)), (a, (0.5, 1.5))).expect("it rises");
-    let off = graph.substitute(&[cubic], &[(w, found)])[0];
-    for k in 0..=20 {
-        let [off] = at(&[off], &[a], &[0.5 + f64::from(k) / 20.0])[..] else { panic!("one number") };
-        assert!(off.abs() < 1e-15, "{off}");
+    let cases =
+        [((0.0, 4.0), (0.5, 1.5)), ((-4.0, 4.0), (0.5, 1.5)), ((-4.0, 4.0), (3.0, 3.0)), ((-40.0, 50.0), (-1.0, 2.0))];
+    for (range, moves) in cases {
+        let found = root(cubic, (w, range), (a, moves)).expect("it rises");
+        let off = graph.substitute(&[cubic], &[(w, found)])[0];
+        for k in 0..=20 {
+            let value = moves.0 + (moves.1 - moves.0) * f64::from(k) / 20.0;
+            let [off] = at(&[off], &[a], &[value])[..] else { panic!("one number") };
+            assert!(off.abs() < 1e-15 * value.abs().max(1.0) * 4.0, "{off} at {value}");
+        }
     }
     assert!(matches!(root(cubic, (w, (1.0, 4.0)), (a, (0.5, 1.5))), Err(NoRoot::None(_))));
 }

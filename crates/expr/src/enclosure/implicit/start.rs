@@ -77,7 +77,7 @@ fn fitted(system: &System, moving: &[usize], degree: usize, newton: &mut Newton<
         .map(|node| {
             let others = system.others_at(moving, node);
             let start = solution(system, &others, &mut { MOST_IN_ALL }).ok()?;
-            Some(newton.from(start, &others, 3).0)
+            newton.settled(start, &others)
         })
         .collect();
     let solutions = solutions?;
@@ -151,18 +151,7 @@ impl System {
 
 /// The solution near a place that is known to hold it alone, to rounding; `None` if Newton's method does not settle.
 pub(super) fn settled(system: &System, start: Vec<f64>, others: &[f64]) -> Option<Vec<f64>> {
-    let mut newton = Newton::new(system);
-    let mut at = start;
-    for _ in 0..MOST_STEPS {
-        let (next, last) = newton.from(at, others, 1);
-        let is_near = |(step, range): (&f64, &Interval)| step.abs() <= REACH * (range.hi - range.lo);
-        if last.iter().zip(&system.unknowns).all(is_near) {
-            // what is left is some ten times the square of the last step
-            return Some(newton.from(next, others, 1).0);
-        }
-        at = next;
-    }
-    None
+    Newton::new(system).settled(start, others)
 }
 
 /// Newton's method in numbers, within the ranges.
@@ -175,6 +164,21 @@ struct Newton<'s> {
 impl<'s> Newton<'s> {
     fn new(system: &'s System) -> Newton<'s> {
         Newton { system, values: ScalarEvaluator::new(&system.values), slopes: ScalarEvaluator::new(&system.slopes) }
+    }
+
+    /// As [`settled`].
+    fn settled(&mut self, start: Vec<f64>, others: &[f64]) -> Option<Vec<f64>> {
+        let mut at = start;
+        for _ in 0..MOST_STEPS {
+            let (next, last) = self.from(at, others, 1);
+            let is_near = |(step, range): (&f64, &Interval)| step.abs() <= REACH * (range.hi - range.lo);
+            if last.iter().zip(&self.system.unknowns).all(is_near) {
+                // what is left is some ten times the square of the last step
+                return Some(self.from(next, others, 1).0);
+            }
+            at = next;
+        }
+        None
     }
 
     /// Where so many steps lead, and the last of them; NaN where there is none.
