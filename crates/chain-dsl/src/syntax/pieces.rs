@@ -5,7 +5,9 @@ use super::words::{self, Reserved};
 
 /// Whether a token begins a statement or an item, as far as one can see without parsing.
 pub(super) fn begins(scan: &Scan, index: usize) -> bool {
-    if !scan.is_opening_word(index) {
+    // elsewhere it says where something is expected
+    let is_inside = scan.say(index) == "at" && scan.say(index + 1) != "=";
+    if !scan.is_opening_word(index) || is_inside {
         return false;
     }
     let after_end = index.checked_sub(1).is_none_or(|before| ends_something(scan, before));
@@ -15,7 +17,7 @@ pub(super) fn begins(scan: &Scan, index: usize) -> bool {
 /// Whether what follows a word makes it the beginning of a statement.
 fn goes_on(scan: &Scan, index: usize) -> bool {
     match scan.kind(index + 1) {
-        Some(Kind::Sign) => scan.say(index) == "at" && scan.say(index + 1) == "=",
+        Some(Kind::Sign) => scan.say(index) == "at",
         Some(Kind::Number) => false,
         _ => true,
     }

@@ -162,13 +162,25 @@ impl<'t> Scan<'t> {
     /// a brace, where something has ended.
     pub(super) fn is_opening_word(&self, index: usize) -> bool {
         let word = self.say(index);
+        let before = index.checked_sub(1);
         let introduces = || {
-            (self.is_name(index + 1) || self.say(index + 1) == "{")
-                && index.checked_sub(1).is_none_or(|before| pieces::ends_something(self, before))
+            let next = self.say(index + 1);
+            (self.is_name(index + 1) || next == "{" || (word == "expect" && self.begins_expectation(index)))
+                && before.is_none_or(|before| pieces::ends_something(self, before))
         };
+        // what is expected may have any name, and may be an error
+        let is_expected = self.indent(index).is_none() && before.is_some_and(|before| self.say(before) == "expect");
         self.kind(index) == Some(Kind::Word)
             && words::begins_statement(word)
-            && (words::reserved(word).is_some() || introduces())
+            && (words::reserved(word).is_some() || (introduces() && !is_expected))
+    }
+
+    /// Whether `expect` at the beginning of a line is followed by what it may expect, and not by what makes it a name.
+    fn begins_expectation(&self, index: usize) -> bool {
+        let next = self.say(index + 1);
+        next == "on"
+            || (self.indent(index).is_some()
+                && (matches!(next, "(" | "[" | "-" | "if") || self.kind(index + 1) == Some(Kind::Number)))
     }
 
     /// The place from one token to the last before another.

@@ -150,6 +150,33 @@ fn random_words() {
     }
 }
 
+/// A mistake in one statement says nothing of the others, whatever the shipped specs have in theirs.
+#[test]
+fn shipped_specs_are_read_alike_piece_by_piece() {
+    let mut folders = vec![std::path::PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../specs"))];
+    let (mut read, mut wrong) = (0, Vec::new());
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "chain") {
+                let text = std::fs::read_to_string(&path).unwrap();
+                let (pieces, _) = recover::file(&Scan::new(&text, FILE), None);
+                let (strict, _) = whole(&Scan::new(&text, FILE)).unwrap();
+                read += 1;
+                if pieces != strict {
+                    wrong.push(path);
+                }
+            }
+        }
+    }
+    assert!(read > 100 && wrong.is_empty(), "{wrong:?} of {read}");
+    let expectations = "job j {\n    expect error E0307\n    expect on other within 1 um\n    expect 2 * a in 1 .. 2\n    \
+                        expect contact near 3 within 1\n    expect error in 1 .. 2\n    expect (a) in 1 .. 2\n    expect nothing\n}\n";
+    assert!(check(expectations));
+}
+
 /// One report for one word deleted or doubled.
 #[test]
 fn one_mistake_is_one_report() {

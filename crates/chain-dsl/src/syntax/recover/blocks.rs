@@ -74,7 +74,7 @@ impl<'s> Recover<'s> {
             } else if self.begins_item(block) {
                 self.nested_item(block);
                 opened = None;
-            } else if self.scan.is_opening_word(self.at) {
+            } else if self.scan.is_opening_word(self.at) || self.lacks_what_follows(block) {
                 self.known_statement(block);
             } else {
                 if self.say() == "{" {
@@ -86,6 +86,11 @@ impl<'s> Recover<'s> {
         if self.at == self.scan.tokens.len() {
             self.unclosed(opened);
         }
+    }
+
+    /// Whether a word that begins a statement of the block is followed by nothing that it could introduce, nor is it a name.
+    fn lacks_what_follows(&self, block: &Block) -> bool {
+        block.words().contains(&self.say()) && !matches!(self.scan.say(self.at + 1), "=" | ":")
     }
 
     fn begins_item(&self, block: &Block) -> bool {
