@@ -10,7 +10,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 use crate::analysis::geometry::tangents;
 use crate::contact::ContactProblem;
 use crate::contact::outline::Bound;
-use crate::contact::point::Member;
+use crate::contact::point::{ALONG, Member};
 use crate::equations::system::System;
 
 /// The end of a flank at a segment of its outline.
@@ -137,7 +137,11 @@ impl ContactProblem {
             let along_lag = if edge.member == 0 { 0.0 } else { moved.dot(&gradient) / speed };
             (in_plane.transpose() * (gradient - second.normal * along_lag)).normalize()
         };
-        let size = climb.norm().max(f64::MIN_POSITIVE);
+        let size = climb.norm();
+        // on a line along which both flanks touch the lag is the same all along it: what is left of its slope is rounding
+        if size < ALONG {
+            return vec![0.0; edges.len()];
+        }
         match edges {
             [] => Vec::new(),
             [edge, rest @ ..] => {

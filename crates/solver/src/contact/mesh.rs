@@ -4,7 +4,7 @@
 //! what all do. At each roll position the pair that opens the members most carries: the composite lag.
 
 use crate::contact::ContactProblem;
-use crate::contact::point::{ContactPoint, Member};
+use crate::contact::point::{ContactPoint, ContactState, Member};
 
 /// Steps of Newton, safeguarded by halving, until a place of the roll is settled, and the share of a pitch at which it is.
 const MOST_STEPS: usize = 60;
@@ -74,7 +74,47 @@ impl ContactProblem {
         let is_flank = |point: &&ContactPoint| point.is_of_flanks();
         let inner = if way < 0 { of.points.iter().find(is_flank) } else { of.points.iter().rev().find(is_flank) }?;
         let step = way as f64 * of.pitch / of.steps as f64;
-        self.end_at_edge(inner, inner.roll + step).or_else(|| self.end_by_halving(inner, step, SETTLED * of.pitch))
+        let at_edge = match inner.state {
+            Some(ContactState::Line) => self.end_of_lines(inner, inner.roll + step),
+            _ => self.end_at_edge(inner, inner.roll + step),
+        };
+        at_edge.or_else(|| self.end_by_halving(inner, step, SETTLED * of.pitch))
+    }
+
+    /// Where the line along which the flanks touch leaves them at a corner, between a point inside and a roll position at which the corner
+    /// alone touches: there the normals are opposite.
+    fn end_of_lines(&self, inner: &ContactPoint, beyond: f64) -> Option<ContactPoint> {
+        let outer = self.followed(inner, beyond).filter(|outer| !outer.is_of_flanks() && outer.edges.len() == 2)?;
+        let corner = |roll: f64, near: &ContactPoint| {
+            let start = near.predicted(roll - near.roll)?;
+            self.root(roll, &start, &outer.edges, near.first_normal.into())
+        };
+        let climb = |members: &[Member; 2]| members[0].normal + members[1].normal;
+        let towards = climb(&self.members(&outer.all_unknowns(), outer.roll));
+        let height = |members: &[Member; 2]| climb(members).dot(&towards);
+        let mut at = corner(inner.roll, &outer)?;
+        let (mut low, mut high) = ((inner.roll, height(&at.1)), (outer.roll, towards.norm_squared()));
+        if low.1 > 0.0 {
+            return None;
+        }
+        let mut roll = inner.roll;
+        for _ in 0..MOST_STEPS {
+            let next = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            if !next.is_finite() || (next - roll).abs() <= SETTLED * (high.0 - low.0).abs() {
+                break;
+            }
+            roll = next;
+            at = corner(roll, &outer)?;
+            let found = height(&at.1);
+            // the end that stays counts half the next time, so that both come nearer
+            if found.signum() == low.1.signum() {
+                (low, high.1) = ((roll, found), 0.5 * high.1);
+            } else {
+                (high, low.1) = ((roll, found), 0.5 * low.1);
+            }
+        }
+        let (root, members) = at;
+        Some(self.point(root, roll, outer.edges.clone(), &members))
     }
 
     /// Where contact of the flanks comes to an edge between a point inside and a roll position, at which it would lie beyond one.

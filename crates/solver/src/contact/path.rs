@@ -6,8 +6,8 @@ use crate::contact::start::NoContact;
 use crate::equations::solution::Outcome;
 use crate::surface::points::SurfacePoint;
 
-/// Halvings of a step of the roll until the contact is lost.
-const HALVINGS: u32 = 12;
+/// Halvings of a step of the roll until the contact is lost: past a corner the end of a line of contact runs off many times as fast.
+const HALVINGS: u32 = 18;
 /// Steps from one roll position to another until the contact is lost.
 const MOST_STEPS: usize = 200;
 /// A point this much farther from where it was expected than the way to it, as a share of that, is of another contact.

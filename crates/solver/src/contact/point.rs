@@ -16,7 +16,7 @@ const OPPOSITE: f64 = 1e-3;
 const FLAT: f64 = 1e-9;
 
 /// Normals whose sum is shorter than this are opposite to rounding of what solves for them.
-const ALONG: f64 = 1e-8;
+pub(super) const ALONG: f64 = 1e-8;
 
 /// How two flanks stand to each other at a point that they share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

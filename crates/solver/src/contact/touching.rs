@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactProblem;
 use crate::contact::edge::FlankEdge;
-use crate::contact::point::{ContactPoint, Member, directions};
+use crate::contact::point::{ContactPoint, ContactState, Member, directions};
 use crate::equations::solution::{Outcome, Solution};
 use crate::equations::system::System;
 use crate::newton::scalar::solve_with;
@@ -47,11 +47,30 @@ impl ContactProblem {
         for _ in 0..MOST_CHANGES {
             let (root, members) = self.root(roll, &start, &edges, normal)?;
             let Some(changed) = self.changed(&edges, &members) else {
-                return Some(self.point(root, roll, edges, &members));
+                let point = self.point(root, roll, edges, &members);
+                return Some(self.end_of_line(&point).unwrap_or(point));
             };
             (edges, start, normal) = (changed, root.unknowns, members[0].normal);
         }
         None
+    }
+
+    /// Where the line along which flank touches flank at a point ends at an edge, the nearer end: along the line nothing says where the contact
+    /// is, and with an edge it is one point. `None` where they touch in a point, or where no edge ends the line.
+    fn end_of_line(&self, point: &ContactPoint) -> Option<ContactPoint> {
+        if !point.edges.is_empty() || point.state != Some(ContactState::Line) {
+            return None;
+        }
+        let segments = |member: usize| self.outlines[member].as_ref().map_or(0, |outline| outline.segments().len());
+        let edges = (0..2).flat_map(|member| (0..segments(member)).map(move |segment| FlankEdge { member, segment }));
+        let ends = edges.filter_map(|edge| {
+            let (root, members) = self.root(point.roll, &point.all_unknowns(), &[edge], point.first_normal.into())?;
+            let end = self.beyond(&members).is_none().then(|| self.point(root, point.roll, vec![edge], &members))?;
+            (end.state == Some(ContactState::Line)).then_some(end)
+        });
+        let from = Vector3::from(point.position);
+        let off = |end: &ContactPoint| (Vector3::from(end.position) - from).norm();
+        ends.min_by(|a, b| off(a).total_cmp(&off(b)))
     }
 
     /// The root with these edges and no others, however far beyond other edges it lies.
