@@ -279,6 +279,51 @@ fn contacts_are_proven_where_they_are_computed() {
     }
 }
 
+/// Involutes of 21 and 34 teeth, module 5 mm, 22 deg, 138 mm apart and 24 mm wide: the line of contact comes and leaves at corners, and lasts for
+/// the transverse contact ratio and the overlap. The pair runs without error, and nothing that is wrong with it is proportional.
+#[test]
+fn lines_of_contact_last_from_corner_to_corner() {
+    let out = folder("contact_lines");
+    let at = out.to_str().unwrap();
+    let [pinion, gear] = [21.0, 34.0].map(|teeth: f64| 2.5 * teeth);
+    let base = (22f64).to_radians().cos();
+    let way = |tip: f64, radius: f64| (tip * tip - (radius * base).powi(2)).sqrt();
+    let working = ((pinion + gear) * base / 138.0).acos();
+    let path = way(pinion + 5.25, pinion) + way(gear + 5.0, gear) - 138.0 * working.sin();
+    let pitch = std::f64::consts::TAU * pinion * base / 21.0;
+    for slope in [0.0, 0.05, 0.1, 0.3, 0.7] {
+        let set = format!("slope={slope}");
+        let spec = "tests/machines/involute_pair.chain";
+        let pair = ["contact", spec, "--no-picture", "--sensitivity", "--out", at];
+        let found = document(&[&pair[..], &["--set", &set]].concat(), 0);
+        let ratio = (path + 24.0 * slope) / pitch;
+        assert!((number(&found, "ratio") - ratio).abs() < 1e-9, "{slope}: {} {ratio}", found["ratio"]);
+        // urad
+        assert!(number(&found["error"], "peak_to_peak") < 1e-6, "{slope}: {}", found["error"]);
+        assert_eq!(found["kind"], "line");
+        assert_eq!(found["middle"]["ellipse"], Value::Null);
+        assert_eq!(found["influences"], Value::Array(Vec::new()), "{slope}");
+        let kinds: Vec<&Value> = found["remarks"].as_array().expect("remarks").iter().map(|of| &of["kind"]).collect();
+        assert!(kinds.contains(&&Value::from("not_linear")), "{kinds:?}");
+        let ends = found["ends"].as_array().expect("two ends");
+        assert!(ends.iter().all(|end| end["at"] != Value::Null), "{slope}: {ends:?}");
+    }
+    let run = flank(&[
+        "contact",
+        "tests/machines/involute_pair.chain",
+        "--error",
+        "m.D=2arcmin",
+        "--no-picture",
+        "--out",
+        at,
+        "--format",
+        "csv",
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let table = std::fs::read_to_string(out.join("involute_pair.drive_side.csv")).expect("the table");
+    assert!(table.contains("# mounted wrong: m.D = 0.03333"), "{}", &table[..500]);
+}
+
 const SPUR_PAIR: &str = "specs/pairs/spur_pair.chain";
 
 /// The outline of a solid is where its teeth end: for samples too. The same gear in a blank that is 0.5 mm smaller and as much narrower.

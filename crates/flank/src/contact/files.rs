@@ -15,6 +15,7 @@ use crate::project::files::Folder;
 use crate::project::requests::ContactRequest;
 use crate::project::session::Session;
 use crate::project::spec::Origin;
+use crate::project::units;
 use crate::solve::arrays::PointGrid;
 use crate::solve::header;
 
@@ -27,10 +28,17 @@ pub(crate) fn write(
     members: &Members<'_, '_>,
     rolling: &Rolling,
     (maps, drawn, milled): (&[GapMap], DrawnContact, Option<&MilledPair>),
+    errors: &[f64],
     (request, origin, session): (&ContactRequest, &Origin, Session),
 ) -> Result<(Vec<String>, Vec<PointGrid>), Failure> {
     let name = format!("{}.{}", job.name, members.contact.name);
     let mut header = header(&[job], &request.jobs, origin);
+    let mounted = members.contact.errors.iter().zip(errors).filter(|(_, error)| **error != 0.0);
+    header
+        .conventions
+        .extend(mounted.map(|(axis, error)| {
+            format!("mounted wrong: {} = {}", axis.name, units::as_given(axis.dimension, *error))
+        }));
     header.conventions.push(format!(
         "gap: along the normal of the flank out of its body; film of the marking compound {} um",
         request.compound * 1e3

@@ -1,6 +1,7 @@
 //! What mounting errors and settings do to a contact.
 
 use flank_chain_dsl::{Contact, Dimension, Job, Parameter, closest};
+use flank_solver::ContactState;
 
 use crate::contact::pair::Members;
 use crate::contact::place::{dot, fine, rows_at};
@@ -64,7 +65,7 @@ struct Cause {
 }
 
 /// What each axis of the pair's machine does to the middle, but for those that turn it, and then each setting of machines and tools, the one
-/// that moves it most first.
+/// that moves it most first. None where the flanks touch along a line: any change brings them to an end of it, one or the other by its sign.
 pub(crate) fn of_all<'g>(
     job: &Job<'g>,
     members: &Members<'_, 'g>,
@@ -72,7 +73,9 @@ pub(crate) fn of_all<'g>(
     rolling: &Rolling,
     compound: f64,
 ) -> Vec<ContactInfluence> {
-    let Some(middle) = rolling.middle() else { return Vec::new() };
+    let Some(middle) = rolling.middle().filter(|middle| middle.state != Some(ContactState::Line)) else {
+        return Vec::new();
+    };
     let problem = members.open_problem(job, errors);
     let unknown = members.contact.lag.dimension;
     let along = rows_at(members, 1, middle);

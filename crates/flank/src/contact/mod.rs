@@ -131,8 +131,14 @@ fn of_contact(
     let shown = drawn::drawn(job, &members, (&pair, &rolling), &patterns, request.compound);
     let header = solve::header(&[job], &request.jobs, origin);
     let (milled, unmilled) = milled_beside(job, &members, (&pair, &rolling), (request, &shown, header, session))?;
-    let (files, grids) =
-        files::write(job, &members, &rolling, (&patterns, shown, milled.as_ref()), (request, origin, session))?;
+    let (files, grids) = files::write(
+        job,
+        &members,
+        &rolling,
+        (&patterns, shown, milled.as_ref()),
+        &errors,
+        (request, origin, session),
+    )?;
     let result = summary.of_rolling(&rolling, &patterns);
     Ok(ContactResult {
         milled: milled.map(|milled| milled.result),

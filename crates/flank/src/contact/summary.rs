@@ -301,6 +301,12 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             );
             told.push(remark(RemarkKind::RollTooShort, name, message));
         }
+        if self.request.sensitivity && rolling.state() == Some(ContactState::Line) {
+            let message = "the flanks touch along a line, and any change brings them to one of its ends: what mounting errors and settings \
+                           do is not proportional; `--error` and `--set` say what a value does"
+                .to_string();
+            told.push(remark(RemarkKind::NotLinear, name, message));
+        }
         told
     }
 }

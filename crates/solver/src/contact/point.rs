@@ -317,9 +317,9 @@ impl ContactPoint {
     }
 
     /// The half axes of the ellipse within which the gap is no wider than a film, mm: the shorter first, along the directions of the
-    /// gap's curvatures. `None` where they are not both positive.
+    /// gap's curvatures. `None` where they are not both positive, rounding apart.
     pub fn ellipse(&self, film: f64) -> Option<[f64; 2]> {
-        let gap = self.gap.filter(|gap| gap.k2 > 0.0)?;
+        let gap = self.gap.filter(|gap| state(gap) == ContactState::Touching)?;
         Some([gap.k1, gap.k2].map(|k| (2.0 * film / k).sqrt()))
     }
 }

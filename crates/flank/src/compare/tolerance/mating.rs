@@ -1,7 +1,7 @@
 //! A contact that the surface takes part in, when settings and mounting change.
 
 use flank_chain_dsl::{Contact, Job};
-use flank_solver::{ContactPoint, ContactProblem, FlankDirections};
+use flank_solver::{ContactPoint, ContactProblem, ContactState, FlankDirections};
 
 use super::causes::{Cause, CausePlace};
 use super::quantity::Quantity;
@@ -34,7 +34,7 @@ pub(super) struct Mating {
 }
 
 impl Mating {
-    /// `None` where the flanks do not touch, or their sample tells no directions there.
+    /// `None` where the flanks do not touch in a point, or their sample tells no directions there.
     ///
     /// # Errors
     /// If a flank is not sampled, or the work is cancelled.
@@ -48,7 +48,9 @@ impl Mating {
         members.check_range(job)?;
         let errors = vec![0.0; contact.errors.len()];
         let Ok(rolling) = Rolling::of_members(job, &mut members, &errors, POSITIONS) else { return Ok(None) };
-        let Some(middle) = rolling.middle().cloned() else { return Ok(None) };
+        // along a line nothing is proportional: any change brings the contact to one end or the other
+        let is_point = |middle: &&ContactPoint| middle.state != Some(ContactState::Line);
+        let Some(middle) = rolling.middle().filter(is_point).cloned() else { return Ok(None) };
         let Some(along) = rows_at(&members, 1, &middle) else { return Ok(None) };
         let is_vertex = rolling.vertex.is_some();
         let pitch = members.pitch(job).filter(|_| is_vertex);
