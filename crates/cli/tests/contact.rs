@@ -232,6 +232,7 @@ fn what_cannot_touch_is_told() {
         (&["--error", "m.B=1mm"][..], 1, "no such axis; it has m.first, m.second, m.A"),
         (&["--error", "m.A=1deg"], 1, "this axis takes a length"),
         (&["--error", "m.A=1"], 2, "write AXIS=VALUE with a unit"),
+        (&["--error", "m.A=1mm", "--error", "m.A=2mm"], 2, "names `m.A` twice"),
         (&["nosuch"], 1, "there is no contact `nosuch`; there is: `driving`"),
     ] {
         let spec = written(&out, "paddles.chain", &PADDLES.replace("LAG", "1 deg .. 9 deg"));

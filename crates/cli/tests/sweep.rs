@@ -406,6 +406,14 @@ fn chunks_are_shared_out_in_parts() {
         assert_eq!(flank(&["sweep", "gather", &parts, "--out", out]).status.code(), Some(0));
     }
     assert_eq!(std::fs::read_to_string(csv).expect("rows"), gathered(&whole));
+    // what the study is made of is not written over
+    for own in ["plan.json", "log", "chunks/rows.csv"] {
+        let own = format!("{parts}/{own}");
+        let before = std::fs::read(&own).ok();
+        let run = flank(&["sweep", "gather", &parts, "--out", &own]);
+        assert!(run.status.code() == Some(1) && text(&run.stderr).contains("belongs to the study"), "{own}");
+        assert_eq!(std::fs::read(&own).ok(), before, "{own}");
+    }
     let bytes = std::fs::read(parquet).expect("rows");
     assert!(bytes.starts_with(b"PAR1") && bytes.ends_with(b"PAR1"));
     // the times of all chunks, which rows do not have

@@ -89,6 +89,21 @@ fn expectations_that_never_fail_are_warned_of() {
     }
 }
 
+/// A report goes over nothing that was read for it.
+#[test]
+fn a_spec_is_not_written_over_by_its_report() {
+    let folder = folder("test_over");
+    let spec = expecting("    expect all solved\n");
+    written(&folder, "gear.chain", &spec);
+    let run = tested(&folder, "", &["gear.chain", "--junit", "gear.chain"]);
+    assert!(
+        run.status.code() == Some(1) && text(&run.stderr).contains("would be written over"),
+        "{}",
+        text(&run.stderr)
+    );
+    assert_eq!(std::fs::read_to_string(folder.join("gear.chain")).expect("the spec"), spec);
+}
+
 /// What was found is told as it is: a value, a formula that has none, the reason why there is none, the job that expects an error.
 #[test]
 fn what_was_found_reads_well() {

@@ -35,7 +35,7 @@ fn a_budget_that_is_not_met_ends_with_3() {
 
 #[test]
 fn what_does_not_go_together_is_refused() {
-    let refused: [(&[&str], i32, &str); 13] = [
+    let refused: [(&[&str], i32, &str); 14] = [
         (&["--scatter", "nosuch=1um"], 1, "has no setting `nosuch`"),
         (&["--scatter", "radial_distance=1arcmin"], 1, "this takes a length above zero"),
         (&["--scatter", "machine_root_angle=5"], 1, "this takes an angle above zero"),
@@ -59,6 +59,16 @@ fn what_does_not_go_together_is_refused() {
             ],
             2,
             "these correlations contradict each other",
+        ),
+        (
+            &[
+                "--correlation",
+                "radial_distance,ratio_of_roll=0.9",
+                "--correlation",
+                "ratio_of_roll,radial_distance=-0.9",
+            ],
+            2,
+            "names `m.ratio_of_roll` and `m.radial_distance` twice",
         ),
     ];
     for (more, code, says) in refused {

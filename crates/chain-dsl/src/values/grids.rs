@@ -70,6 +70,8 @@ fn read<'g>(context: &mut Context<'g>, call: &Call) -> Option<Value<'g>> {
         return Some(Value::Grid(Rc::clone(known)));
     }
     let found = context.tables.text(&paths).and_then(|text| table_files::numbers(&text, &columns, &texts));
+    let found =
+        found.and_then(|rows| if rows.is_empty() && !texts.is_empty() { Err(no_row(&texts)) } else { Ok(rows) });
     let grid = found.and_then(|rows| arranged(&columns, rows)).map(|arranged| arranged.grid(context, &columns));
     match grid {
         Ok(grid) => {
@@ -82,6 +84,12 @@ fn read<'g>(context: &mut Context<'g>, call: &Call) -> Option<Value<'g>> {
             None
         }
     }
+}
+
+/// No row of the table is one of those that are asked for.
+fn no_row(texts: &[(&str, &str)]) -> Reason {
+    let asked: Vec<String> = texts.iter().map(|(column, text)| format!("`{text}` as `{column}`")).collect();
+    Reason::Wrong(Code::WrongTable, format!("no row of it that is solved has {}", asked.join(" and ")))
 }
 
 /// Rows in the order of a grid.

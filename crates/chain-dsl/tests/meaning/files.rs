@@ -574,6 +574,12 @@ fn a_grid_is_whole_and_does_not_fold() {
         ),
         (
             whole.clone(),
+            "grid(\"p.csv\", \"nope\", i: number, j: number, x: length, y: length, z: length)",
+            "point(u, v)",
+            "E0005 `p.csv`: no row of it that is solved has `nope` as `surface`",
+        ),
+        (
+            whole.clone(),
             "grid(\"p.csv\", flank: \"a\", i: number, j: number, x: length)",
             "[point(u, v), 0 mm, 0 mm]",
             "E0005 `p.csv`: there is no column `flank`; there is: surface, i, j, x, y, z, status",

@@ -35,7 +35,7 @@ pub(crate) fn man(arguments: &Man) -> Result<Ending, Failure> {
         page.render(&mut text).map_err(|error| format!("the page {name} cannot be made: {error}"))?;
         texts.push((name, String::from_utf8_lossy(&text).into_owned()));
     }
-    let files = flank::write_texts(&arguments.out, &texts)?;
+    let files = flank::write_texts(&arguments.out, &texts, &[])?;
     print(&if arguments.json {
         document::text(&ManualPages { files })
     } else {

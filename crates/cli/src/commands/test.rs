@@ -81,17 +81,18 @@ fn tested(arguments: &Test, specs: &[PathBuf]) -> Result<TestResult, Failure> {
         result.specs.iter().for_each(annotate);
     }
     if let Some(file) = &arguments.junit {
-        write(file, junit(&result))?;
+        let read: Vec<PathBuf> = result.specs.iter().flat_map(|spec| spec.read.clone()).collect();
+        write(file, junit(&result), &read)?;
     }
     result.specs.iter().try_for_each(|spec| draw(arguments, spec))?;
     eprint(&format!("tested in {:.0} ms\n", start.elapsed().as_secs_f64() * 1e3));
     Ok(result)
 }
 
-fn write(file: &Path, text: String) -> Result<(), Failure> {
+fn write(file: &Path, text: String, read: &[PathBuf]) -> Result<(), Failure> {
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    write_texts(folder, &[(name, text)])?;
+    write_texts(folder, &[(name, text)], read)?;
     Ok(())
 }
 
@@ -99,7 +100,7 @@ fn write(file: &Path, text: String) -> Result<(), Failure> {
 fn draw(arguments: &Test, spec: &TestedSpec) -> Result<(), Failure> {
     let Some(picture) = spec.snapshot.as_ref().and_then(|snapshot| snapshot.picture.as_ref()) else { return Ok(()) };
     let stem = Path::new(&spec.file).file_stem().unwrap_or_default().to_string_lossy();
-    let written = write_texts(&arguments.out, &[(format!("{stem}.moved.svg"), picture.clone())])?;
+    let written = write_texts(&arguments.out, &[(format!("{stem}.moved.svg"), picture.clone())], &spec.read)?;
     eprint(&format!("wrote {}\n", written.join(", ")));
     Ok(())
 }

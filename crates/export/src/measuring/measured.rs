@@ -97,6 +97,11 @@ pub fn read_measured(text: &str, surface: &str) -> Result<MeasuredGrid, Measured
     if titles.is_empty() {
         return Err(MeasuredFault::NoTable("it is empty".to_string()));
     }
+    if let Some(k) =
+        (1..titles.len()).find(|k| !titles[*k].is_empty() && titles.iter().take(*k).any(|title| title == &titles[*k]))
+    {
+        return Err(MeasuredFault::NoTable(format!("two columns are called `{}`", &titles[k])));
+    }
     let place = |name: &str| titles.iter().position(|title| title == name);
     let no_column = |missing| MeasuredFault::NoColumn {
         missing,
@@ -253,6 +258,7 @@ mod tests {
         );
         assert_eq!(told("row,column,deviation_um\n1,1,nan\n"), "line 2: `nan` is no number");
         assert_eq!(told("row,column,deviation_um\n1,1,1\n1,1,2\n"), "line 3: row 1, column 1 is there already");
+        assert_eq!(told("row,column,x,y,z,x\n1,1,0,0,0,1\n"), "two columns are called `x`");
         assert_eq!(told("row,column,deviation_um\n"), "no line is about the grid of `left`");
         assert!(told("row,column,deviation_um\n1,1\n").contains("found record with 2 fields"));
     }

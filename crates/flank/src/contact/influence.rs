@@ -38,6 +38,9 @@ pub(crate) fn mounting(
                 "option `error {name}`: the pair of contact `{contact}` of job `{job}` has no such axis; it has {known}{near}"
             )));
         };
+        if asked.iter().filter(|(other, _)| other == name).count() > 1 {
+            return Err(Failure::Request(format!("option `error` names `{name}` twice: leave one of them out")));
+        }
         let dimension = contact.errors[at].dimension;
         errors[at] = match error {
             MountingError::Length(mm) if dimension == Dimension::LENGTH => *mm,

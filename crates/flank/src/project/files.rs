@@ -1,6 +1,6 @@
 //! The files that a command leaves in its folder.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use flank_draw::{Picture, Report, Scene, write_page, write_report_html, write_report_markdown};
 use flank_export::{
@@ -215,7 +215,7 @@ impl<'a> Folder<'a> {
         if self.origin.holds(&path) {
             let path = shown_path(&path);
             return Err(Failure::Input(format!(
-                "`{path}` is what this command reads and would be written over: name another folder with option `out`"
+                "`{path}` is what this command reads and would be written over: name another file or folder"
             )));
         }
         check(self.monitor)?;
@@ -231,12 +231,13 @@ impl<'a> Folder<'a> {
     }
 }
 
-/// Writes texts into a folder, which is made if it is not there: all of them, or none. Gives back their paths.
+/// Writes texts into a folder, which is made if it is not there: all of them, or none. Gives back their paths. Files that were `read`, by
+/// their paths without links, are not written over.
 ///
 /// # Errors
 /// What stands in the way.
-pub fn write_texts(folder: &Path, texts: &[(String, String)]) -> Result<Vec<String>, Failure> {
-    let origin = Origin::default();
+pub fn write_texts(folder: &Path, texts: &[(String, String)], read: &[PathBuf]) -> Result<Vec<String>, Failure> {
+    let origin = Origin::of_files(read);
     let mut folder = Folder::at(folder, &origin, &Unwatched);
     texts.iter().try_for_each(|(name, text)| folder.text(name, text))?;
     folder.finish()

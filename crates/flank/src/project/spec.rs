@@ -85,6 +85,11 @@ pub(crate) struct Origin {
 }
 
 impl Origin {
+    /// Of files that are read, without links.
+    pub(crate) fn of_files(files: &[PathBuf]) -> Origin {
+        Origin { files: files.to_vec(), ..Origin::default() }
+    }
+
     pub(crate) fn of_compilation(compilation: &Compilation<'_>) -> Origin {
         let mut hash = Sha256::new();
         for (_, source) in compilation.sources.files() {

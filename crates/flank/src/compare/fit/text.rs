@@ -78,7 +78,7 @@ impl fmt::Display for FitResult {
             let all = choice.candidates.len();
             let (chosen, leave) = (self.correction.settings.len(), um(choice.all_leave_um));
             let settings = units::counted(all, "setting");
-            write!(f, "\nchosen: {chosen} of {settings}; all of them would leave {leave} um")?;
+            write!(f, "\nchosen: {chosen} of {settings}; all of them would leave {leave} um by derivatives")?;
             match choice.noise_um {
                 0.0 => writeln!(f)?,
                 noise => writeln!(f, "; a point scatters by {} um", um(noise))?,

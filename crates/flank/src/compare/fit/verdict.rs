@@ -123,6 +123,13 @@ fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)
     if !bound.is_empty() {
         reasons.push(format!("bounds: {} stands at the end of its range", bound.join(", ")));
     }
+    if !result.kept.is_empty() {
+        let kept: Vec<&str> = result.kept.iter().map(|of| of.surface.as_str()).collect();
+        reasons.push(format!(
+            "kept: what option `keep` says of {} is held first, and may take what the settings could do",
+            kept.join(", ")
+        ));
+    }
     if !is_settled(result) {
         reasons.push("the search came to no end: the points may lie too far off to be reached".to_string());
     }
@@ -145,7 +152,9 @@ fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)
 impl Fitting<'_, '_> {
     /// Whether the same deviations from the other end, or upside down, go with the settings.
     fn reversed(&self, request: &FitRequest, main: &AdjustedSurfaces) -> Option<Remark> {
-        if request.is_wish() || main.rms() < NOTHING {
+        // what a bound keeps back says nothing of the order of the points
+        let is_bound = main.fit.held.iter().any(Option::is_some);
+        if request.is_wish() || main.rms() < NOTHING || is_bound {
             return None;
         }
         let mut effects: Vec<Vec<f64>> = (0..self.problem.settings.len())
@@ -154,7 +163,9 @@ impl Fitting<'_, '_> {
             .collect();
         effects.extend(self.turn_effects());
         let ways = [([false, true], "columns"), ([true, false], "rows"), ([true, true], "rows and columns")];
-        let found = ways.into_iter().filter_map(|(way, what)| Some((self.left_reversed(way, &effects, main)?, what)));
+        let found = ways
+            .into_iter()
+            .filter_map(|(way, what)| Some((self.left_reversed(way, (&effects, request.resolution), main)?, what)));
         let found = found.filter(|([rest, left], _)| *rest < REVERSED * left);
         let ([rest, _], what) = found.reduce(|best, next| if next.0[0] < best.0[0] { next } else { best })?;
         let message = format!(
@@ -164,7 +175,12 @@ impl Fitting<'_, '_> {
     }
 
     /// What effects leave of the deviations in another order, um rms, and what the fit leaves of these points in theirs.
-    fn left_reversed(&self, way: [bool; 2], effects: &[Vec<f64>], main: &AdjustedSurfaces) -> Option<[f64; 2]> {
+    fn left_reversed(
+        &self,
+        way: [bool; 2],
+        (effects, resolution): (&[Vec<f64>], f64),
+        main: &AdjustedSurfaces,
+    ) -> Option<[f64; 2]> {
         let partners = self.partners(way);
         // of half as many unknowns chance alone would leave 0.7
         if partners.len() < 2 * effects.len() {
@@ -173,7 +189,7 @@ impl Fitting<'_, '_> {
         let reversed: Vec<f64> = partners.iter().map(|(_, from)| self.now.fit.residuals[*from]).collect();
         let own = |of: &[f64]| partners.iter().map(|(at, _)| of[*at]).collect::<Vec<f64>>();
         let effects: Vec<Vec<f64>> = effects.iter().map(|of| own(of)).collect();
-        Some([linear_rest(&reversed, &effects, 0.0), rms(&own(&main.fit.residuals))].map(|left| 1e3 * left))
+        Some([linear_rest(&reversed, &effects, resolution), rms(&own(&main.fit.residuals))].map(|left| 1e3 * left))
     }
 
     /// Of points the ones that stand at their places in the other order of rows, columns or both, where these were measured.

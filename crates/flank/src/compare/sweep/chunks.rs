@@ -26,7 +26,7 @@ const CAREFUL: u32 = 2;
 /// by a chance of one in thousands: each run goes on with the case at which the last one ended, and keeps what it has computed.
 const DEADLY: u32 = 5;
 /// The file of a study in which times stand: rows have none, so that equal chunks are equal bytes.
-const LOG: &str = "log";
+pub(super) const LOG: &str = "log";
 /// The folder of a study in which points of cases are kept.
 pub(super) const POINTS: &str = "points";
 

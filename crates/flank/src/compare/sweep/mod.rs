@@ -100,7 +100,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
 
 /// The plan that is in the folder already, if it is of the same study: its chunks keep their size.
 fn kept_plan(folder: &Path, plan: Plan) -> Result<Plan, Failure> {
-    if !folder.join("plan.json").exists() {
+    if !folder.join(plan::PLAN).exists() {
         return Ok(plan);
     }
     let there = Plan::read(folder)?;
@@ -137,6 +137,16 @@ pub fn sweep_status(study: &Path) -> Result<SweepResult, Failure> {
     Ok(told(study, &Plan::read(study)?))
 }
 
+/// Whether a file is what a study is made of, or would lie among that.
+fn is_of_study(study: &Path, file: &Path) -> bool {
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let Some((study, folder)) = std::fs::canonicalize(study).ok().zip(std::fs::canonicalize(folder).ok()) else {
+        return false;
+    };
+    let is_own = |name: &str| file.file_name().is_some_and(|own| own == name);
+    folder.starts_with(&study) && (folder != study || is_own(plan::PLAN) || is_own(chunks::LOG))
+}
+
 /// All rows of a study in the order of its cases, with what is missing: as CSV, or in a file, whole or not at all, if one is named; then the
 /// text is empty. A file whose name ends with `.parquet` is a table of Parquet, any other one CSV.
 ///
@@ -144,6 +154,11 @@ pub fn sweep_status(study: &Path) -> Result<SweepResult, Failure> {
 /// If there is no study, or the file cannot be written.
 pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepResult), Failure> {
     let plan = Plan::read(study)?;
+    if let Some(file) = out.filter(|file| is_of_study(study, file)) {
+        let message =
+            format!("`{}` belongs to the study and would be written over: name another file", shown_path(file));
+        return Err(Failure::Input(message));
+    }
     let (mut text, mut tally) = (String::new(), Tally::default());
     match out {
         Some(file) if file.extension().is_some_and(|ending| ending == "parquet") => write_atomically(file, |out| {

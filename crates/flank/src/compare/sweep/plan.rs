@@ -18,6 +18,8 @@ use crate::project::failure::Failure;
 use crate::project::requests::JobSelection;
 use crate::project::spec::Origin;
 
+/// The file of a plan.
+pub(super) const PLAN: &str = "plan.json";
 /// The name of the document.
 const SCHEMA: &str = "flank.sweep_plan/1";
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -140,13 +142,13 @@ impl Plan {
 
     pub(super) fn write(&self, folder: &Path) -> Result<(), Failure> {
         let text = serde_json::to_string_pretty(self).map_err(|reason| Failure::Input(reason.to_string()))?;
-        write_text(&folder.join("plan.json"), &text)
+        write_text(&folder.join(PLAN), &text)
     }
 
     /// # Errors
     /// If there is no study, or another program has made it.
     pub(super) fn read(folder: &Path) -> Result<Plan, Failure> {
-        let path = folder.join("plan.json");
+        let path = folder.join(PLAN);
         let text = std::fs::read_to_string(&path).map_err(|reason| {
             Failure::Input(format!("{} is no study: {}: {reason}", folder.display(), path.display()))
         })?;

@@ -136,6 +136,14 @@ fn scatter(causes: &[Cause], job: &Job<'_>, request: &ToleranceRequest) -> Resul
         })
     };
     let pairs = request.correlations.iter().map(pair).collect::<Result<Vec<_>, Failure>>()?;
+    let is_same = |a: &(usize, usize, f64), b: &(usize, usize, f64)| [(a.0, a.1), (a.1, a.0)].contains(&(b.0, b.1));
+    let again = (1..pairs.len()).find(|k| pairs[..*k].iter().any(|of| is_same(of, &pairs[*k])));
+    if let Some((a, b, _)) = again.map(|k| pairs[k]) {
+        let [a, b] = [a, b].map(|at| &causes[at].name);
+        return Err(Failure::Request(format!(
+            "option `correlation` names `{a}` and `{b}` twice: leave one of them out"
+        )));
+    }
     let deviations: Vec<f64> = causes.iter().map(|cause| cause.scatter).collect();
     Scatter::new(&deviations, &pairs).ok_or_else(|| {
         Failure::Request(

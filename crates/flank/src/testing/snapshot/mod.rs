@@ -69,7 +69,7 @@ pub fn accept_snapshot(tested: &TestedSpec) -> Result<Option<String>, Failure> {
     let path = Path::new(file);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    write_texts(folder, &[(name, text.clone())])?;
+    write_texts(folder, &[(name, text.clone())], &[])?;
     Ok(Some(file.clone()))
 }
 
