@@ -89,6 +89,17 @@ fn expectations_that_never_fail_are_warned_of() {
     }
 }
 
+/// No value lies between ends that are the wrong way round.
+#[test]
+fn ends_the_wrong_way_round_are_told() {
+    let folder = folder("test_ends");
+    for expected in ["r.module in 6 mm .. 4 mm", "flank_plus: x in 40 mm .. -40 mm"] {
+        written(&folder, "gear.chain", &expecting(&format!("    expect {expected}\n")));
+        let told = text(&tested(&folder, "", &["gear.chain"]).stderr);
+        assert!(told.contains("E0303") && told.contains("put the smaller end first"), "{expected}: {told}");
+    }
+}
+
 /// A report goes over nothing that was read for it.
 #[test]
 fn a_spec_is_not_written_over_by_its_report() {

@@ -114,19 +114,24 @@ impl<'g> Context<'g> {
             high.and_then(|high| self.require_constant(high, range.high.span, &format!("the range of {what}")));
         let (low_value, high_value) = (low_value?, high_value?);
         if low_value >= high_value {
-            let [low, high] = [low_value, high_value].map(|value| dimension::shown(value, wanted));
-            let message = format!("the range of {what} is empty: {low} is not below {high}");
-            let help = if low_value > high_value { "put the smaller end first" } else { "give it two different ends" };
-            let empty = Diagnostic::new(Code::EmptyRange, range.span, message).help(help);
-            let is_turned = low_value > high_value;
-            self.report(if is_turned {
-                empty.rewriting(Rewriting::Exchange([range.low.span, range.high.span]))
-            } else {
-                empty
-            });
+            self.report_empty(range, [low_value, high_value], wanted, what);
             return None;
         }
         Some(((low_value, high_value), [low?, high?]))
+    }
+
+    /// Reports a range whose ends are one, or the wrong way round.
+    pub(crate) fn report_empty(&mut self, range: &Range, [low, high]: [f64; 2], of: Dimension, what: &str) {
+        let is_turned = low > high;
+        let help = if is_turned { "put the smaller end first" } else { "give it two different ends" };
+        let [low, high] = [low, high].map(|value| dimension::shown(value, of));
+        let message = format!("the range of {what} is empty: {low} is not below {high}");
+        let empty = Diagnostic::new(Code::EmptyRange, range.span, message).help(help);
+        self.report(if is_turned {
+            empty.rewriting(Rewriting::Exchange([range.low.span, range.high.span]))
+        } else {
+            empty
+        });
     }
 
     /// A dimension as written.

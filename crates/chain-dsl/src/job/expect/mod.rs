@@ -213,6 +213,10 @@ impl<'g> Builder<'_, 'g> {
         let (value, dimension) = scalar(context, &value, &named.scope)?;
         let low = context.scalar(&low, &named.scope, dimension, "the lower end")?;
         let high = context.scalar(&high, &named.scope, dimension, "the upper end")?;
+        if let Some((low, high)) = low.as_constant().zip(high.as_constant()).filter(|(low, high)| low > high) {
+            context.report_empty(range, [low, high], dimension, "what is expected");
+            return None;
+        }
         self.value(context, (value, [low, high]), dimension, named, span)
     }
 
