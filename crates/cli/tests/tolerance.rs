@@ -78,6 +78,21 @@ fn what_does_not_go_together_is_refused() {
     }
 }
 
+/// Cases with values that the spec refuses are counted, and a pair that touches along lines has no contact that moves in proportion.
+#[test]
+fn cases_beyond_a_range_and_lines_of_contact_are_told() {
+    let asked =
+        ["tolerance", "tests/machines/involute_pair.chain", "pinion", "--scatter", "slope=0.001", "--sweep", "40"];
+    let run = flank(&asked);
+    let (out, told) = (text(&run.stdout), text(&run.stderr));
+    assert_eq!(run.status.code(), Some(3), "{out}{told}");
+    let (_, beyond) = out.split_once("40 of 40 random cases solved; in ").unwrap_or_else(|| panic!("{out}"));
+    // of a value at the lower end of its range about half lie below it
+    let count: usize = beyond.split(' ').next().expect("a number").parse().expect("a number");
+    assert!((10..=30).contains(&count) && beyond.contains("a setting lies beyond its range"), "{out}");
+    assert!(told.contains("do not touch in a point that could move"), "{told}");
+}
+
 /// A spur gear is even along its teeth: what rounding leaves of slope and bias there has no causes, and random cases say nothing of it.
 #[test]
 fn rounding_is_no_result() {

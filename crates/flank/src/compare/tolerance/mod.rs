@@ -77,6 +77,7 @@ pub fn tolerance(request: &ToleranceRequest, monitor: &dyn Monitor) -> Result<To
         }
         None => None,
     };
+    let (cases, beyond) = cases.unzip();
     let result = |(at, of): (usize, &Quantity)| ToleratedResult {
         name: of.name.clone(),
         unit: of.unit.to_string(),
@@ -88,7 +89,11 @@ pub fn tolerance(request: &ToleranceRequest, monitor: &dyn Monitor) -> Result<To
         swept: cases.as_ref().and_then(|cases| sweep::shown(cases, at)),
     };
     let results: Vec<ToleratedResult> = quantities.iter().enumerate().map(result).collect();
-    let sweep = cases.map(|cases| SweptCases { drawn: cases.len(), solved: cases.iter().flatten().count() });
+    let sweep = cases.map(|cases| SweptCases {
+        drawn: cases.len(),
+        solved: cases.iter().flatten().count(),
+        beyond: beyond.unwrap_or(0),
+    });
     not_done.extend(sweep.and_then(|sweep| unsolved(sweep, &of.surface.name)));
     not_done.extend(results.iter().filter(|_| !request.scatter.is_empty()).filter_map(too_much));
     let remarks: Vec<Remark> =

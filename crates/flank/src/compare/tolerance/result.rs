@@ -113,6 +113,8 @@ pub struct SweptCases {
     pub drawn: usize,
     /// Those in which all was solved.
     pub solved: usize,
+    /// Those in which a setting lies beyond its range, solved or not: the spec refuses its value.
+    pub beyond: usize,
 }
 
 impl Answer for ToleranceResult {

@@ -22,6 +22,8 @@ pub(super) struct Swept<'a> {
     causes: &'a [Cause],
     flank: &'a Flank,
     contacts: &'a [Mating],
+    /// What each cause may be at the least and at the most, as the spec has it.
+    ranges: Vec<Option<(f64, f64)>>,
     /// All settings that are no counts, from those that scatter.
     following: Tape,
 }
@@ -39,10 +41,12 @@ impl<'a> Swept<'a> {
         };
         let all: Vec<Expr<'g>> = job.parameters.iter().filter(|of| !of.is_count).map(value).collect();
         let following = Tape::new(&all, &open).expect("a job without errors leaves nothing unbound");
-        Swept { causes, flank, contacts, following }
+        let ranges = causes.iter().map(|of| of.setting(job).and_then(|setting| setting.range)).collect();
+        Swept { causes, flank, contacts, ranges, following }
     }
 
-    /// In each case the change of each number; `None` where something has no solution.
+    /// In each case the change of each number, `None` where something has no solution; and in how many of them a setting lies beyond its
+    /// range.
     ///
     /// # Errors
     /// If the work is cancelled.
@@ -51,7 +55,7 @@ impl<'a> Swept<'a> {
         scatter: &Scatter,
         count: usize,
         session: Session<'_>,
-    ) -> Result<Vec<Option<Vec<f64>>>, Failure> {
+    ) -> Result<(Vec<Option<Vec<f64>>>, usize), Failure> {
         let mut draw = GaussianDraw::new(SEED);
         let drawn: Vec<Vec<f64>> = (0..count).map(|_| scatter.drawn(&mut draw)).collect();
         let mut found = Vec::with_capacity(count);
@@ -59,7 +63,14 @@ impl<'a> Swept<'a> {
             session.check()?;
             found.par_extend(cases.par_iter().map(|off| self.case(off)));
         }
-        Ok(found)
+        let beyond = drawn.iter().filter(|off| self.is_beyond(off)).count();
+        Ok((found, beyond))
+    }
+
+    /// Whether a setting has a value that its spec refuses.
+    fn is_beyond(&self, off: &[f64]) -> bool {
+        let mut values = self.causes.iter().zip(off).zip(&self.ranges);
+        values.any(|((of, off), range)| range.is_some_and(|(low, high)| !(low..=high).contains(&(of.value + off))))
     }
 
     fn case(&self, off: &[f64]) -> Option<Vec<f64>> {

@@ -25,7 +25,11 @@ impl fmt::Display for ToleranceResult {
         writeln!(f, "\nshares of the variance, the largest first\n")?;
         writeln!(f, "{}", self.shares().trim_end())?;
         let Some(sweep) = self.sweep else { return Ok(()) };
-        writeln!(f, "\n{} of {} random cases solved\n", sweep.solved, sweep.drawn)?;
+        let beyond = match sweep.beyond {
+            0 => String::new(),
+            beyond => format!("; in {beyond} a setting lies beyond its range, where the spec refuses it"),
+        };
+        writeln!(f, "\n{} of {} random cases solved{beyond}\n", sweep.solved, sweep.drawn)?;
         writeln!(f, "{}", swept(&self.results).trim_end())
     }
 }
