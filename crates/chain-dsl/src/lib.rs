@@ -72,3 +72,5 @@ pub use model::{
     SampleEnds, SampleGrid, Solid, SolidForm, ToolShape, ValueSource, WantedContact,
 };
 pub use values::dimension::{Dimension, unit_size};
+pub use values::lone::lone_value;
+pub use values::steel_side::{OpenSide, SteelSide};

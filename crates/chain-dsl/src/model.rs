@@ -9,6 +9,7 @@ use flank_expr::{Expr, Graph};
 use crate::diagnostics::source::Span;
 use crate::job::expect::model::Expectation;
 use crate::values::dimension::Dimension;
+use crate::values::steel_side::SteelSide;
 
 /// One job, ready to be solved: its parameters are variables with values beside them.
 #[derive(Clone, Debug)]
@@ -42,9 +43,12 @@ pub struct Job<'g> {
     pub millings: Vec<Milling<'g>>,
     /// What it is tested by, if that was asked for ([`Request::whole`](crate::Request::whole)).
     pub expectations: Vec<Expectation<'g>>,
-    /// Of its parameters those from whose values numbers of it follow that it does not hold as functions of them: ends of ranges, points
-    /// that are asked for, which branch of an `if` counts. With other values of the others it is the same job.
+    /// Of its parameters those from whose values numbers of it follow that it does not hold as functions of them, also by way of what they
+    /// are given to: ends of ranges, points that are asked for or that a spline goes through, which branch of an `if` counts. With other
+    /// values of the others it is the same job, as long as steel stays on its side.
     pub decisive: Vec<Expr<'g>>,
+    /// On which side of each surface of its tools the steel lies.
+    pub steel_sides: Vec<SteelSide<'g>>,
 }
 
 /// What a contact shall be like at its vertex, where the error is extreme. Places and directions are on the second flank.

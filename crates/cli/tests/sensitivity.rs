@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{flank, folder, text};
+use support::{AGAIN, flank, folder, text};
 
 /// A rack that stands off by 1 mm leaves sin α more material all over its flanks; the face width leaves them where they are.
 #[test]
@@ -188,4 +188,23 @@ fn differences(nominal: &serde_json::Value, sides: [&serde_json::Value; 2], off:
         1e3 * (0..3).map(|k| normal[k] * (above[k] - below[k])).sum::<f64>() / (2.0 * off)
     };
     points.map(of).collect()
+}
+
+/// A tool that is another one with one other setting moves with all others of that one, from wherever these have their values.
+#[test]
+fn a_tool_that_is_another_one_again_moves_with_it() {
+    let out = folder("sensitivity_again");
+    let spec = support::written(&out, "again.chain", AGAIN);
+    let moved = |more: &[&str]| {
+        let asked = ["solve", &spec, "--sensitivity", "--json", "--no-picture", "--out", out.to_str().unwrap()];
+        let run = flank(&[&asked[..], more].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let document: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let surface = document["surfaces"].as_array().expect("surfaces").iter().find(|of| of["name"] == "two");
+        let all = surface.expect("a surface")["sensitivity"]["parameters"].clone();
+        let helix = all.as_array().expect("parameters").iter().find(|of| of["name"] == "r.helix").cloned();
+        helix.expect("a parameter")["rms"].as_f64().expect("a number")
+    };
+    let (by_definition, given) = (moved(&[]), moved(&["--set", "r.helix=15deg"]));
+    assert!(given > 0.0 && (by_definition - given).abs() < 1e-12 * given, "{by_definition} and {given}");
 }

@@ -2,7 +2,7 @@
 
 mod support;
 
-use support::{flank, text};
+use support::{AGAIN, flank, text, written};
 
 const PINION: &str = "specs/bevel/pinion_19x62.chain";
 const PAIR: &str = "specs/pairs/bevel_19x62.chain";
@@ -115,5 +115,45 @@ fn rounding_is_no_result() {
             is_moved,
             !["slope_lengthwise", "crowning_lengthwise", "bias"].contains(&of["name"].as_str().unwrap_or(""))
         );
+    }
+}
+
+/// The results of a document: name, standard deviation, and that of random cases.
+fn results(asked: &[&str]) -> Vec<(String, f64, f64)> {
+    let run = flank(&[&["tolerance"], asked, &["--json"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let document: serde_json::Value = serde_json::from_str(&text(&run.stdout)).expect("a document");
+    let number = |of: &serde_json::Value| of.as_f64().expect("a number");
+    let result = |of: &serde_json::Value| {
+        let name = of["name"].as_str().expect("a name").to_string();
+        (name, number(&of["standard_deviation"]), number(&of["swept"]["standard_deviation"]))
+    };
+    document["results"].as_array().expect("results").iter().map(result).collect()
+}
+
+/// A tool under a second name scatters with the first, whether that has its settings from its definition or was given them.
+#[test]
+fn a_second_name_scatters_with_the_first() {
+    let folder = support::folder("tolerance_again");
+    let spec = written(&folder, "again.chain", AGAIN);
+    let asked = [spec.as_str(), "three", "--scatter", "r.tilt=5arcmin,m.shift=10um", "--sweep", "100"];
+    let by_definition = results(&asked);
+    let given = results(&[&asked[..], &["--set", "r.tilt=20deg", "--set", "m.shift=0mm"]].concat());
+    for ((name, linear, swept), known) in by_definition.iter().zip(&given) {
+        assert!((linear - known.1).abs() < 1e-9 && (swept - known.2).abs() < 1e-9, "{name}: {linear} and {}", known.1);
+    }
+    assert!(by_definition.iter().any(|(name, linear, _)| name == "slope_profilewise" && *linear > 1.0));
+}
+
+/// A setting that scatters by itself does not follow what it is given: in contacts as on flanks, in linear numbers as in cases.
+#[test]
+fn what_scatters_by_itself_is_cut_from_its_formula() {
+    let pair = "specs/pairs/helical_pair.chain";
+    let scatter = "helix_angle=1arcmin,p.swivel=1arcmin,normal_module=1um,h.normal_module=1um";
+    let all = results(&[pair, "pinion_flank", "--scatter", scatter, "--sweep", "500"]);
+    for name in ["slope_profilewise", "drive_side.lengthwise", "drive_side.profilewise"] {
+        let (_, linear, swept) = all.iter().find(|of| of.0 == name).expect("a result");
+        // three standard errors of 500 cases
+        assert!((swept / linear - 1.0).abs() < 3.0 / 1000_f64.sqrt(), "{name}: {linear} and {swept}");
     }
 }

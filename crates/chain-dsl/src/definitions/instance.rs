@@ -25,8 +25,14 @@ pub(crate) type Overrides = HashMap<String, Expression>;
 pub(crate) enum Source<'a, 'g> {
     /// A definition by itself: no values unless by default.
     Definition,
-    /// `machine m = definition(setting: value, …)` in a job.
-    Instance { name: &'a Name, definition: &'a str, settings: &'a [Argument], job: &'a Scope<'g> },
+    /// `machine m = definition(setting: value, …)` in a job; `first` is the earlier one of the job that it is again, if it is one.
+    Instance {
+        name: &'a Name,
+        definition: &'a str,
+        settings: &'a [Argument],
+        job: &'a Scope<'g>,
+        first: Option<&'a str>,
+    },
     /// A machine by itself, under its own name: settings may have no value.
     Standing { name: &'a Name },
     /// The job itself.
@@ -85,6 +91,8 @@ pub(crate) struct Binder<'a, 'g> {
     pub(crate) standing: Vec<RangedVariable<'g>>,
     /// The settings of an instance by name.
     settings: HashMap<&'a str, &'a Expression>,
+    /// Of one that is an earlier one again the variables of those that are not what they are there.
+    other: Vec<Expr<'g>>,
 }
 
 impl<'a, 'g> Binder<'a, 'g> {
@@ -96,7 +104,8 @@ impl<'a, 'g> Binder<'a, 'g> {
         let named = given.iter().filter_map(|setting| Some((setting.name.as_ref()?.node.as_str(), &setting.value)));
         // of two with one name the first counts: the second is reported
         let settings = named.rev().collect();
-        Binder { source, overrides, parameters: Vec::new(), missing: Vec::new(), standing: Vec::new(), settings }
+        let (parameters, missing, standing, other) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Binder { source, overrides, parameters, missing, standing, settings, other }
     }
 
     /// One parameter.
@@ -136,6 +145,11 @@ impl<'a, 'g> Binder<'a, 'g> {
             }
             None => None,
         };
+        let first = self.in_first(param);
+        let given = match (given, first) {
+            (Some(given), Some(first)) => Some(self.taken_over(context, given, first)),
+            (given, _) => given,
+        };
         if given.is_none() && !matches!(self.source, Source::Definition | Source::Standing { .. }) {
             self.missing.push(param.name.clone());
         }
@@ -148,6 +162,9 @@ impl<'a, 'g> Binder<'a, 'g> {
             None => None,
         };
         let variable = context.variable(name.clone(), Role::Parameter, value);
+        if given.as_ref().is_some_and(|given| first.is_some_and(|first| given.definition != first)) {
+            self.other.push(variable);
+        }
         let is_count = is_count(&param.dimension);
         if matches!(self.source, Source::Standing { .. }) {
             let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
@@ -182,6 +199,30 @@ impl<'a, 'g> Binder<'a, 'g> {
             });
         }
         Some(Value::Scalar(variable, dimension))
+    }
+
+    /// The variable of a parameter in the earlier machine or tool that this one is again.
+    fn in_first(&self, param: &Param) -> Option<Expr<'g>> {
+        let Source::Instance { job, first: Some(first), .. } = self.source else { return None };
+        match job.get(&format!("{first}.{}", param.name.node)) {
+            Some(Value::Scalar(variable, _)) => variable.as_variable().map(|_| *variable),
+            _ => None,
+        }
+    }
+
+    /// What nobody gives a value is what it is in the earlier one, and follows that, unless it is made of what is another one here.
+    fn taken_over(&self, context: &Context<'g>, given: Given<'g>, first: Expr<'g>) -> Given<'g> {
+        if !matches!(given.by, ValueSource::Definition(_)) {
+            return given;
+        }
+        let is_own = context.variables_of(&[given.definition]).iter().any(|variable| self.other.contains(variable));
+        let value = context.constant_kept(given.definition);
+        if is_own || !matches!(value, Constant::Known(value) if value == context.value_of(first)) {
+            // given a value there it has that here, too, whatever it is made of
+            context.decides(first);
+            return given;
+        }
+        Given { definition: first, ..given }
     }
 
     /// The profile that a parameter is set to; nothing if something is wrong (and reported).

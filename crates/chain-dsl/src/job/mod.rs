@@ -8,6 +8,7 @@ mod axes;
 mod close;
 mod contact;
 mod cut;
+mod decisive;
 pub(crate) mod expect;
 mod independence;
 mod mill;
@@ -32,6 +33,7 @@ use crate::definitions::tool::{self, BuiltTool, Tools};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
+use crate::job::decisive::Decisive;
 use crate::job::sampled::SampledPoints;
 use crate::limits;
 use crate::model::{
@@ -184,10 +186,16 @@ pub(crate) fn build<'g>(
 ) -> Job<'g> {
     let points_before = context.sample_points;
     let mut sampled = SampledPoints::default();
+    let mut decisive = Decisive::default();
     loop {
+        context.steel_sides.clear();
         let (built, mut asked) = with_points(context, job, is_variant, definitions, file, sampled);
-        if !asked.find(context, &built, job) {
-            return built;
+        let is_new = asked.find(context, &built, job);
+        decisive.add(context, &built);
+        if !is_new {
+            let decisive = decisive.of(&built);
+            solid::check_each(context, &built, &decisive);
+            return Job { decisive, steel_sides: std::mem::take(&mut context.steel_sides), ..built };
         }
         sampled = asked;
         context.sample_points = points_before;
@@ -269,10 +277,7 @@ fn with_points<'g>(
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
     let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
-    let decisive = built.parameters.iter().map(|parameter| parameter.variable);
-    let decisive: Vec<Expr<'g>> = decisive.filter(|variable| context.is_decisive(*variable)).collect();
-    solid::check_each(context, &built, &decisive);
-    (Job { expectations, decisive, ..built }, sampled)
+    (Job { expectations, ..built }, sampled)
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -305,6 +310,7 @@ impl<'g> Builder<'_, 'g> {
             millings: self.millings,
             expectations: Vec::new(),
             decisive: Vec::new(),
+            steel_sides: Vec::new(),
         }
     }
 
@@ -381,6 +387,7 @@ impl<'g> Builder<'_, 'g> {
             parameters: &built.parameters,
             profiles: Vec::new(),
         });
+        let first = own.as_ref().map(|own| own.name.node.as_str());
         let Some(instance) = self.resolved(context, instance, own) else { return };
         let instance = instance.as_ref();
         let Some(definition) = machines.get(&instance.definition.node) else {
@@ -391,7 +398,7 @@ impl<'g> Builder<'_, 'g> {
         let Some(flat) = machine::flatten(context, machines, definition) else {
             return;
         };
-        let source = self.source(instance);
+        let source = self.source(instance, first);
         let job = instance_owner(context, &instance.name);
         let built = flat.build(context, &definition.name, source, self.definitions.overrides);
         context.owner = job;
@@ -415,6 +422,7 @@ impl<'g> Builder<'_, 'g> {
             let profiles = tools.get(definition).map(|tool| tool::profiles(tool, &name.node)).unwrap_or_default();
             Original { name, definition, parameters: &built.parameters, profiles }
         });
+        let first = own.as_ref().map(|own| own.name.node.as_str());
         let Some(instance) = self.resolved(context, instance, own) else { return };
         let instance = instance.as_ref();
         let Some(definition) = tools.get(&instance.definition.node) else {
@@ -422,7 +430,7 @@ impl<'g> Builder<'_, 'g> {
             context.unknown_item(&instance.definition, "tool", known.map(String::as_str));
             return;
         };
-        let source = self.source(instance);
+        let source = self.source(instance, first);
         // of most tools, a job needs few surfaces
         let name = instance.name.node.as_str();
         let is_named =
@@ -481,12 +489,12 @@ impl<'g> Builder<'_, 'g> {
         Some(Cow::Owned(ast::Instance { name: instance.name.clone(), definition, settings }))
     }
 
-    fn source<'s>(&'s self, instance: &'s ast::Instance) -> Source<'s, 'g> {
+    fn source<'s>(&'s self, instance: &'s ast::Instance, first: Option<&'s str>) -> Source<'s, 'g> {
         if self.stands_alone {
             return Source::Standing { name: &instance.name };
         }
         let definition = &instance.definition.node;
-        Source::Instance { name: &instance.name, definition, settings: &instance.settings, job: &self.scope }
+        Source::Instance { name: &instance.name, definition, settings: &instance.settings, job: &self.scope, first }
     }
 
     /// Settings, constants and axes of a machine or tool can be read in the job as `m.name`.

@@ -150,6 +150,8 @@ fn points<'g>(
         Some(found.value)
     });
     let wanted: Vec<Expr<'g>> = wanted.collect::<Option<_>>()?;
+    // the points that a spline goes through are numbers
+    context.variables_of(&wanted).into_iter().for_each(|of| _ = context.constant(of));
     let mut system = System::new(context, surface, sample)?;
     let mut values = context.values().to_vec();
     let mut found = Vec::new();
@@ -256,7 +258,6 @@ impl<'g> System<'g> {
         others.extend(
             context.variables_of(&residuals).into_iter().filter(|it| !variables.contains(it) && !targets.contains(it)),
         );
-        // the points that a spline goes through are numbers
         others[targets.len()..].iter().for_each(|other| _ = context.constant(*other));
         let parameters: Vec<f64> = others[targets.len()..].iter().map(|other| context.value_of(*other)).collect();
         if parameters.iter().any(|value| value.is_nan()) || unknowns.iter().any(|unknown| !unknown.range.continuous) {

@@ -2,12 +2,13 @@
 
 use flank_expr::geometry::{Chain, Edge};
 
-use crate::definitions::material_side::{self, Seen};
+use crate::definitions::material_side;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::model::RangedVariable;
 use crate::values::context::Context;
+use crate::values::steel_side::Seen;
 
 use super::available::Available;
 
@@ -27,7 +28,7 @@ pub(super) fn side<'g>(
     let mut seen = Vec::new();
     for k in order {
         let raw = edge.raw_normal(driven, motions[k].0.variable);
-        match material_side::side(context, &unknowns, raw, edge.steel) {
+        match material_side::noted_side(context, &unknowns, raw, edge.steel) {
             Ok(flipped) => return Some((k, flipped)),
             Err(what) => seen.push((k, what)),
         }

@@ -15,6 +15,7 @@ use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::limits;
 use crate::syntax::ast;
 use crate::values::dimension::Dimension;
+use crate::values::steel_side::SteelSide;
 use crate::values::table_files::Tables;
 use crate::values::value::{Constant, Value};
 
@@ -96,6 +97,8 @@ pub(crate) struct Context<'g> {
     steps: Cell<usize>,
     /// Which variables have decided a number of the model, an `if` or how far something is laid out, by their numbers.
     decisive: RefCell<Vec<bool>>,
+    /// On which sides of the surfaces of the job that is built the steel was seen.
+    pub(crate) steel_sides: Vec<SteelSide<'g>>,
     /// A limit on the work has been exceeded and reported.
     exhausted: bool,
     /// Points of the samples so far.
@@ -137,6 +140,7 @@ impl<'g> Context<'g> {
             moving: HashSet::new(),
             steps: Cell::new(0),
             decisive: RefCell::default(),
+            steel_sides: Vec::new(),
             exhausted: false,
             sample_points: 0,
             call_depth: 0,
@@ -313,6 +317,11 @@ impl<'g> Context<'g> {
     /// The same for a parameter, of which the model keeps the expression as well.
     pub(crate) fn constant_kept(&self, expr: Expr<'g>) -> Constant {
         self.evaluated(expr, false)
+    }
+
+    /// Notes that a number of the model follows from the value of a variable.
+    pub(crate) fn decides(&self, variable: Expr<'g>) {
+        self.decide(variable.as_variable().map(|variable| variable.index()));
     }
 
     fn decide(&self, variables: impl IntoIterator<Item = usize>) {

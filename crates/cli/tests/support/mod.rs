@@ -56,6 +56,44 @@ pub fn self_contained(specs: &[&str]) -> String {
     all.lines().filter(|line| !line.starts_with("use ") && !needs_files(line)).map(|line| format!("{line}\n")).collect()
 }
 
+/// A second tool and a second machine with one other setting each, and a tool under a second name.
+pub const AGAIN: &str = "machine planer {
+    param shift : length = 0 mm
+    param bias : length = 0 mm
+    axis C : rotary
+    axis Y : linear
+    frame bed
+    frame ram   in bed = translate(30 mm + shift, Y + bias, 0 mm)
+    frame table in bed = rotate_z(C)
+}
+tool rack {
+    param tilt : angle = 20 deg
+    param helix : angle = 15 deg
+    param crown : number = 0.1 * sin(tilt)
+    surface plus(u: length in -3 mm .. 3 mm, v: length in -20 mm .. 20 mm) {
+        at = [u * cos(tilt), -u * sin(tilt) + v * sin(helix) + crown * u^2 / 10 mm, v * cos(helix)]
+        body towards [0, 1, 0]
+    }
+}
+job gear {
+    machine m = planer
+    machine n = m(bias: 1 mm)
+    tool r = rack
+    tool r2 = r(tilt: 25 deg)
+    tool r3 = r
+    mount r, r2 on m.ram
+    mount r3 on n.ram
+    motion roll : angle in -60 deg .. 60 deg
+    drive m.Y, m.C = 30 mm * roll, roll
+    drive n.Y, n.C = 30 mm * roll, roll
+    surface one in m.table = envelope(r.plus, over: roll)
+    surface two in m.table = envelope(r2.plus, over: roll)
+    surface three in n.table = envelope(r3.plus, over: roll)
+    sample one, two, three { rho: 29.7 mm .. 31 mm by 5, z: -3 mm .. 3 mm by 5 }
+    expect all solved
+}
+";
+
 /// The pinion of the library as a REXS file; `COEFFICIENTS` and further tools are put in by the tests.
 pub const REXS: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <model version="1.4" applicationId="test" date="2026-01-01T00:00:00+01:00">

@@ -1,6 +1,7 @@
 //! What mounting errors and settings do to a contact.
 
 use flank_chain_dsl::{Contact, Dimension, Job, Parameter, closest};
+use flank_expr::Expr;
 use flank_solver::ContactState;
 
 use crate::contact::pair::Members;
@@ -133,18 +134,19 @@ fn settings(job: &Job<'_>, first: usize) -> Vec<Cause> {
         };
         Cause { name: parameter.name.clone(), kind: InfluenceKind::Setting, of, step, per }
     };
-    let all = job.parameters.iter().zip(following(job, first));
+    let all = job.parameters.iter().zip(following(job, &[], first));
     all.filter(|(parameter, _)| !parameter.is_count).map(cause).collect()
 }
 
 /// For each parameter of a job the symbols of [`Members::open_problem`] that change with it, each with its share: itself, and what is
-/// defined by it. Its settings begin at the symbol `first`, behind the axes.
-pub(crate) fn following(job: &Job<'_>, first: usize) -> Vec<Vec<(usize, f64)>> {
-    let known: Vec<flank_solver::Parameter<'_>> = job
-        .parameters
-        .iter()
-        .map(|p| flank_solver::Parameter { variable: p.variable, definition: p.definition, value: p.value })
-        .collect();
+/// defined by it, but for those that are `open`, which change by themselves. Its settings begin at the symbol `first`, behind the axes.
+pub(crate) fn following<'g>(job: &Job<'g>, open: &[Expr<'g>], first: usize) -> Vec<Vec<(usize, f64)>> {
+    let known = |p: &Parameter<'g>| {
+        let is_open = open.contains(&p.variable);
+        let definition = if is_open { p.variable.graph().constant(p.value) } else { p.definition };
+        flank_solver::Parameter { variable: p.variable, definition, value: p.value }
+    };
+    let known: Vec<flank_solver::Parameter<'g>> = job.parameters.iter().map(known).collect();
     let following = flank_solver::total_derivatives(&known).expect("a job without errors leaves nothing unbound");
     // symbols are those that are no counts
     let number = |at: usize| first + job.parameters[..at].iter().filter(|parameter| !parameter.is_count).count();

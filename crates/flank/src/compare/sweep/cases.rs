@@ -185,12 +185,7 @@ fn of_ranges(
         }
         let mut values = [0.0; 2];
         for (value, text) in values.iter_mut().zip(texts) {
-            let mut set: Vec<(String, String)> =
-                which.set.iter().filter(|(other, _)| *other != known.input.name).cloned().collect();
-            set.push((known.input.name.clone(), text.clone()));
-            let job = which.project.job(&job.name, &set)?;
-            let found = job.parameters().iter().find(|of| of.name == known.input.name);
-            *value = found.map_or(f64::NAN, |of| plain(of.value, &of.unit));
+            *value = end_of_range(which, &job.name, &known, text)?;
         }
         if let Some(why) = values.iter().find_map(|value| known.refused(*value)) {
             return Err(Failure::Input(format!("option `vary {name}`: {why}")));
@@ -205,6 +200,29 @@ fn of_ranges(
         inputs.push(known.input);
     }
     Ok((inputs, CaseValues::Ranges(ends)))
+}
+
+/// The first or last value of an input, in its unit.
+///
+/// # Errors
+/// If it is none that the input may have. A text that goes wrong with it otherwise is a matter of the cases.
+fn end_of_range(which: &JobSelection, job: &str, known: &KnownInput, text: &str) -> Result<f64, Failure> {
+    let name = &known.input.name;
+    let mut set: Vec<(String, String)> = which.set.iter().filter(|(other, _)| other != name).cloned().collect();
+    set.push((name.clone(), text.to_string()));
+    match which.project.job(job, &set) {
+        Ok(job) => {
+            let found = job.parameters().iter().find(|of| of.name == *name);
+            Ok(found.map_or(f64::NAN, |of| plain(of.value, &of.unit)))
+        }
+        Err(Failure::Findings(findings)) => {
+            let value = flank_chain_dsl::lone_value(text, known.dimension);
+            let value = value.map(|value| plain(units::shown(known.dimension, value), &known.input.unit));
+            let allowed = value.filter(|value| known.refused(*value).is_none());
+            allowed.ok_or(Failure::Findings(findings))
+        }
+        Err(other) => Err(other),
+    }
 }
 
 /// A value in its unit without the noise of a conversion to degrees: 19, not 18.999999999999996.

@@ -1,6 +1,7 @@
 //! A contact that the surface takes part in, when settings and mounting change.
 
 use flank_chain_dsl::{Contact, Job};
+use flank_expr::Expr;
 use flank_solver::{ContactPoint, ContactProblem, ContactState, FlankDirections};
 
 use super::causes::{Cause, CausePlace};
@@ -55,7 +56,8 @@ impl Mating {
         let is_vertex = rolling.vertex.is_some();
         let pitch = members.pitch(job).filter(|_| is_vertex);
         let height = pitch.map(|pitch| middle.lag_slopes[1].signum() * pitch * pitch / 8.0);
-        let following = influence::following(job, errors.len());
+        let open: Vec<Expr<'g>> = causes.iter().filter_map(|of| of.setting(job)).map(|of| of.variable).collect();
+        let following = influence::following(job, &open, errors.len());
         let axis = |name: &str| contact.errors.iter().position(|axis| axis.name == name);
         let symbols = causes.iter().map(|cause| match cause.at {
             CausePlace::Setting(at) => following[at].clone(),

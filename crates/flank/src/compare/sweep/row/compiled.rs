@@ -1,17 +1,17 @@
 //! Cases that differ by settings and mounting errors alone, compiled once: settings stay open in all tapes, and each case gives them numbers.
 
-use flank_chain_dsl::{Job, Parameter};
+use flank_chain_dsl::{Job, OpenSide, Parameter};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Deviation, Outcome, SurfaceGeometry, SurfacePoint};
 
 use super::super::inputs::{StudyInput, size_of_unit};
-use super::Found;
 use super::collected::Collected;
 use super::numbers::{
     NominalPoints, Numbers, contact_numbers, curvature_numbers, ease_off_numbers, line_counts, missed_count,
     place_numbers, point_counts, width_numbers,
 };
 use super::opened::{Opened, Sampled};
+use super::{Found, SolvedSample};
 use crate::contact::family::ContactFamily;
 use crate::project::failure::Failure;
 use crate::project::requests::JobSelection;
@@ -35,6 +35,8 @@ pub(super) struct Compiled {
     /// All parameters as they follow from the settings, with the ranges that they must lie in.
     following: Tape,
     allowed: Vec<Option<(f64, f64)>>,
+    /// Where the steel has to stay.
+    sides: Vec<OpenSide>,
     /// The samples that something is collected of, each once.
     samples: Vec<Sampled>,
     collected: Vec<CompiledNumbers>,
@@ -106,6 +108,7 @@ impl Compiled {
             settings,
             following: following.expect("a job without errors leaves nothing unbound"),
             allowed: job.parameters.iter().map(|of| of.range).collect(),
+            sides: job.steel_sides.iter().filter_map(|side| side.opened(&variables, &bindings)).collect(),
             samples: opened.into_samples(),
             collected,
             kept: keeps.then_some(kept),
@@ -137,6 +140,9 @@ impl Compiled {
         if following.iter().zip(&self.allowed).any(is_beyond) {
             return Ok(Some(nothing("spec wrong", flank_chain_dsl::Code::OutOfRange.as_str())));
         }
+        if !self.sides.iter().all(|side| side.is_kept(&settings)) {
+            return Ok(None);
+        }
         let mut case = CaseNumbers {
             all: &all,
             settings: &settings,
@@ -151,8 +157,8 @@ impl Compiled {
             numbers.extend(found);
             why = why.or(lost);
         }
-        let kept = self.kept.iter().flatten().map(|k| case.points(*k).map(<[SurfacePoint]>::to_vec));
-        let kept: Vec<Vec<SurfacePoint>> = kept.collect::<Result<_, _>>()?;
+        let kept = self.kept.iter().flatten().map(|k| Ok((self.samples[*k].counts(), case.points(*k)?.to_vec())));
+        let kept: Vec<SolvedSample> = kept.collect::<Result<_, Failure>>()?;
         let found = Found::of_numbers(numbers, why, case.is_followed);
         let CaseNumbers { points, .. } = case;
         self.samples.iter().zip(points).for_each(|(of, points)| points.into_iter().for_each(|own| of.take_back(own)));

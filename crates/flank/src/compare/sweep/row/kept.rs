@@ -4,9 +4,9 @@ use std::path::Path;
 
 use flank_chain_dsl::Job;
 use flank_export::{Axis, Dataset, Header, Patch, write_atomically, write_csv};
-use flank_solver::SurfacePoint;
 
 use super::super::inputs::StudyInput;
+use super::SolvedSample;
 use crate::project::failure::Failure;
 use crate::solve::patch;
 use crate::solve::points::placed;
@@ -36,7 +36,7 @@ impl KeptPoints {
         &self,
         file: &Path,
         inputs: impl Iterator<Item = (&'i StudyInput, &'i f64)>,
-        points: &[Vec<SurfacePoint>],
+        points: &[SolvedSample],
     ) -> Result<(), Failure> {
         let given = inputs.map(|(input, value)| {
             let (name, value) = input.as_setting(*value);
@@ -44,10 +44,12 @@ impl KeptPoints {
         });
         let conventions = self.header.conventions.iter().cloned().chain(given).collect();
         let header = Header { conventions, ..self.header.clone() };
-        let patches = self.outlines.iter().zip(points).map(|(outline, points)| {
+        let patches = self.outlines.iter().zip(points).map(|(outline, (counts, points))| {
+            let axis = |of: &Axis, k: usize| Axis { count: counts[k], ..of.clone() };
+            let (rows, columns) = (axis(&outline.rows, 0), axis(&outline.columns, 1));
             // why a point is missing names other surfaces, which are not at hand where cases are compiled once
             let points = points.iter().map(|point| placed(point, String::new())).collect();
-            Patch { points, ..outline.clone() }
+            Patch { rows, columns, points, ..outline.clone() }
         });
         let dataset = Dataset { header, patches: patches.collect() };
         Ok(write_atomically(file, |out| write_csv(&dataset.surfaces(), out))?)

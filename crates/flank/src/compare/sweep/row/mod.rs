@@ -41,8 +41,11 @@ pub(super) struct Found {
     pub(super) branch: &'static str,
     pub(super) numbers: Vec<Option<f64>>,
     /// Of each sampled surface, if they were solved.
-    pub(super) points: Option<Vec<Vec<SurfacePoint>>>,
+    pub(super) points: Option<Vec<SolvedSample>>,
 }
+
+/// How many rows and columns a sample has in a case, and its points.
+pub(super) type SolvedSample = ([usize; 2], Vec<SurfacePoint>);
 
 impl Found {
     fn of_numbers(numbers: Vec<Option<f64>>, why: Option<String>, is_followed: bool) -> Found {
@@ -51,7 +54,7 @@ impl Found {
         Found { verdict, why: why.unwrap_or_default(), branch, numbers, points: None }
     }
 
-    fn with_points(self, points: Option<Vec<Vec<SurfacePoint>>>) -> Found {
+    fn with_points(self, points: Option<Vec<SolvedSample>>) -> Found {
         Found { points, ..self }
     }
 }

@@ -3,7 +3,7 @@
 use flank_chain_dsl::{Job, compile_request};
 use flank_export::Values;
 use flank_expr::Graph;
-use flank_solver::{Deviation, SurfacePoint};
+use flank_solver::Deviation;
 
 use super::super::inputs::StudyInput;
 use super::collected::{Collected, sample_of};
@@ -11,7 +11,7 @@ use super::numbers::{
     NominalPoints, Numbers, contact_request, curvature_numbers, ease_off_numbers, line_counts, missed_count,
     place_numbers, point_counts,
 };
-use super::{Found, kind_of};
+use super::{Found, SolvedSample, kind_of};
 use crate::compare::deviation;
 use crate::compare::map::{Named, find};
 use crate::contact::rolled;
@@ -93,7 +93,7 @@ impl Case<'_, '_> {
         match (of, nominal) {
             (Collected::EaseOff(name), Some(nominal)) => self.ease_off(name, nominal),
             (Collected::EaseOff(name), None) => Err(Failure::Input(format!("`{name}` has no nominal points"))),
-            (Collected::Points, _) => Ok(point_counts(self.samples()?.iter().flatten())),
+            (Collected::Points, _) => Ok(point_counts(self.samples()?.iter().flat_map(|(_, points)| points))),
             (Collected::Requirements, _) => self.requirements(),
             (Collected::Limits, _) => self.limits(),
             (Collected::Width([a, b]), _) => self.width([a.as_str(), b.as_str()]),
@@ -104,11 +104,11 @@ impl Case<'_, '_> {
     }
 
     /// The points of all samples, by their surfaces.
-    fn samples(&self) -> Result<Vec<Vec<SurfacePoint>>, Failure> {
+    fn samples(&self) -> Result<Vec<SolvedSample>, Failure> {
         let sampled = self.job.surfaces.iter().filter_map(|surface| Some((surface, surface.sample.as_ref()?)));
         let solved = sampled.map(|(surface, sample)| {
             self.session.check()?;
-            Ok(solve::points(self.job, surface, sample, self.options()).points)
+            Ok((sample.counts, solve::points(self.job, surface, sample, self.options()).points))
         });
         solved.collect()
     }
@@ -117,7 +117,7 @@ impl Case<'_, '_> {
         let bindings = self.job.bindings();
         let sampled = self.job.surfaces.iter().filter(|surface| surface.sample.is_some());
         let samples = self.samples()?;
-        let missed = sampled.zip(&samples).map(|(surface, points)| {
+        let missed = sampled.zip(&samples).map(|(surface, (_, points))| {
             let required = RequiredNumber::all(surface, &bindings);
             required.iter().map(|number| number.missed(points).count()).sum::<usize>()
         });
