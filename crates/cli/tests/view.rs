@@ -537,7 +537,7 @@ fn reports_fit_their_paper_in_a_browser() {
         .filter(|path| path.extension().is_some_and(|end| end == "html"))
         .map(|path| path.display().to_string())
         .collect();
-    assert_eq!(reports.len(), 3);
+    assert_eq!(reports.len(), 4);
     let arguments: Vec<&str> = [out].into_iter().chain(reports.iter().map(String::as_str)).collect();
     let told = node("printed.mjs", &arguments, &Value::Null).expect("node drives the browser");
     assert!(told["tables"].as_u64() > Some(40) && told["wide"] == json!([]), "{told}");

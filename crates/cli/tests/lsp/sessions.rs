@@ -54,7 +54,11 @@ fn changes_keep_the_line_ends_of_a_text() {
         let mut client = Client::start();
         client.open(uri, &text.replace('\n', end));
         let told = client.findings(uri);
-        let found = told.diagnostics.iter().find(|found| found.message.contains("not driven")).expect("an axis");
+        let found = told
+            .diagnostics
+            .iter()
+            .find(|found| found.code == Some(gen_lsp_types::Code::String("E0501".to_string())))
+            .expect("an axis");
         let params = json!({ "textDocument": { "uri": uri }, "range": found.range, "context": { "diagnostics": [] } });
         let actions = client.ask("textDocument/codeAction", params).expect("actions");
         let added = actions[0]["edit"]["changes"][uri][0]["newText"].as_str().expect("a text");

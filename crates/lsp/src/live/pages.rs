@@ -29,8 +29,10 @@ pub(super) struct Told {
     pub(super) spec: String,
     /// The jobs that have a page.
     pub(super) jobs: Vec<String>,
-    /// The one in front.
+    /// The one in front: the one that is asked for, else the first.
     pub(super) job: Option<String>,
+    /// The one that is asked for, if one is.
+    pub(super) asked: Option<String>,
     /// The jobs that have none, and why.
     pub(super) unshown: BTreeMap<String, String>,
     /// The first error, where the picture is older than the text.
@@ -134,6 +136,7 @@ impl Pages {
         state.told.error = error.map(|error| (self.spelled)(&error));
         if !texts.is_empty() {
             state.told.picture += 1;
+            state.told.asked = wish.job.clone();
             state.told.job = wish.job.clone().or_else(|| jobs.first().cloned());
             state.told.jobs = jobs;
             state.told.unshown = unshown;
