@@ -31,6 +31,22 @@ def test_values_have_units(job):
     assert length.value == pytest.approx(98.1, rel=1e-15)
     with pytest.raises(flank.InputError, match="a length, an angle or a number"):
         job.with_values({"c.blade_angle": units.Quantity(1, "kg")})
+    # a number is one in whatever unit, and no angle
+    ratios = [units.Quantity(335, "percent"), units.Quantity(3350, "um/mm"), units.Quantity(3.35, "")]
+    values = [job.with_values({"m.ratio_of_roll": of}).parameters["m.ratio_of_roll"].value for of in ratios]
+    assert values == pytest.approx([3.35] * 3, rel=1e-15)
+    with pytest.raises(flank.SpecError, match="E0301"):
+        job.with_values({"c.blade_angle": units.Quantity(35, "percent")})
+
+
+def test_a_value_has_a_name(job):
+    for name in ("", " "):
+        with pytest.raises(flank.InputError, match="without a name"):
+            job.with_values({name: "1 mm"})
+
+
+def test_a_job_has_the_names_of_its_surfaces(job):
+    assert list(job) == list(job.surfaces) and "concave" in job and "concav" not in job
 
 
 @pytest.mark.parametrize(

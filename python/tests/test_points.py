@@ -4,7 +4,7 @@ import gc
 
 import numpy as np
 import pytest
-from conftest import PINION
+from conftest import PINION, ROOT
 
 import flank
 
@@ -53,6 +53,13 @@ def test_points_that_are_not_solved_are_data():
     with pytest.raises(flank.NotSolved) as caught:
         points.strict()
     assert caught.value.not_done[0]["kind"] == "not_solved"
+
+
+def test_a_surface_with_a_dot_in_its_name_says_why():
+    points = flank.load(ROOT / "specs/hobbing/ground_stock_gear.chain").solve()
+    assert points["plus.flank"].outcomes["trimmed"] > 0 and "trim" in points["plus.flank"].why()
+    for surface in (points[name] for name in points):
+        assert bool(surface.why()) == (set(surface.outcomes) != {"solved"})
 
 
 def test_large_surfaces_are_kept_unless_told_otherwise():

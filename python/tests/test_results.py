@@ -104,6 +104,17 @@ def test_deviations_are_those_of_both_values(job):
     assert np.nanmax(np.abs(same.um)) < 1e-6
 
 
+def test_an_array_has_its_rows_and_columns_where_nothing_was_measured(job):
+    made = job.with_values({"m.radial_distance": "98.0 mm"})
+    xyz = np.array(made.measuring_grid("concave", 5, 9).xyz)
+    xyz[-1] = xyz[:, -1] = np.nan
+    deviation = job.inspect("concave", xyz).um
+    assert deviation.shape == (5, 9) and np.isfinite(deviation).sum() == 32
+    for measured in (xyz, job.inspect("concave", xyz)):
+        fit = job.fit("concave", measured, vary="m.radial_distance")
+        assert fit["identification"]["settings"][0]["new"] == pytest.approx(98.0, abs=1e-4)
+
+
 def test_a_measured_flank_gives_its_settings(job, tmp_path):
     moved = job.with_values({"m.radial_distance": "98.05 mm", "m.machine_root_angle": "15.7 deg"})
     xyz = moved.measuring_grid("concave", 5, 9).xyz
@@ -270,6 +281,9 @@ def test_derivations(job):
         lambda job: job.contact(),
         lambda job: job.mill(),
         lambda job: job.plot("section", size=(1, 1)),
+        lambda job: job.plot("section", size=(1000,)),
+        lambda job: job.mesh(elements=(3, 4)),
+        lambda job: job.mesh(elements=(3, 4, 3, 5)),
         lambda job: job.synthesis("centred"),
         lambda job: job.solve().write("x", "dwg"),
         lambda job: flank.explain("E9999"),

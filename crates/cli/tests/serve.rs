@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use serde_json::Value;
+use serde_json::{Value, json};
 use support::{flank, folder, text, top};
 
 struct Served {
@@ -26,9 +26,14 @@ impl Drop for Served {
 }
 
 fn serve(spec: &Path) -> Served {
+    serve_with(spec, &[])
+}
+
+fn serve_with(spec: &Path, arguments: &[&str]) -> Served {
     let mut child = Command::new(env!("CARGO_BIN_EXE_flank"))
         .args(["view", "--serve"])
         .arg(spec)
+        .args(arguments)
         .current_dir(spec.parent().expect("a folder"))
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
@@ -178,6 +183,40 @@ fn nobody_else_reads_the_page() {
         assert!(!listening.is_empty() && listening.iter().all(|line| line.contains("0100007F:")), "{listening:?}");
     }
     assert!(served.get(&served.path, &own).0.contains("200"));
+}
+
+#[test]
+fn each_job_is_shown_or_told_why_not() {
+    let folder = folder("serve-jobs");
+    let before = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let second = before.rfind("sample flank_plus").expect("the second job");
+    let (first, rest) = before.split_at(second);
+    let spec = folder.join("gear.chain");
+    std::fs::write(&spec, &before).expect("the spec");
+    let refused = flank(&["view", spec.to_str().expect("a plain path"), "--serve", "--job", "nope"]);
+    assert_eq!(refused.status.code(), Some(1));
+    let said = text(&refused.stderr);
+    assert!(said.contains("no job `nope`") && !said.contains("127.0.0.1"), "{said}");
+
+    let served = serve_with(&spec, &["--job", "first_helical_gear"]);
+    let mut events = served.events();
+    let told = events.next();
+    assert_eq!(told["job"], "first_helical_gear");
+    assert_eq!((&told["jobs"], &told["unshown"]), (&json!(["first_gear", "first_helical_gear"]), &json!({})));
+    // a range without a point, no sample, no such job
+    for (text, reason) in [
+        (format!("{first}{}", rest.replace("z: -10 mm .. 10 mm", "z: 500 mm .. 510 mm")), "has no point to show"),
+        (format!("{first}{}", &rest[rest.find("\n}").expect("an end")..]), "asks for no points"),
+        (before.replace("first_helical_gear", "other"), "no job `first_helical_gear`"),
+    ] {
+        std::fs::write(&spec, &text).expect("the spec");
+        let told = events.next();
+        assert_eq!((&told["job"], &told["error"]), (&json!("first_helical_gear"), &Value::Null), "{told}");
+        let why = told["unshown"]["first_helical_gear"].as_str().unwrap_or_default();
+        assert!(why.contains(reason) && told["jobs"][0] == "first_gear", "{told}");
+    }
+    std::fs::write(&spec, &before).expect("the spec");
+    assert_eq!(events.next()["unshown"], json!({}));
 }
 
 #[test]

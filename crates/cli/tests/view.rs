@@ -286,6 +286,50 @@ fn a_pair_rolls_through_the_positions_that_were_solved() {
     assert!(one == several, "the page depends on the number of threads");
 }
 
+/// The faces of whole gears enclose what their bodies do but for the sag of facets, also those of a worm whose one tooth winds about it.
+#[test]
+fn whole_gears_are_closed() {
+    let spec = "specs/bodies/worm_and_wheel_body.chain";
+    let (file, _) = page(spec, &folder("view_bodies"));
+    let run = flank(&[
+        "solve",
+        spec,
+        "--solid",
+        "gear",
+        "--json",
+        "--out",
+        folder("view_bodies_solids").to_str().expect("a plain path"),
+    ]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let solids: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let data = data(&file);
+    let bodies = data["bodies"].as_array().expect("bodies");
+    assert_eq!(bodies.len(), 2);
+    for (body, solid) in bodies.iter().zip(solids["solids"].as_array().expect("solids")) {
+        let faces = body["faces"].as_array().expect("faces").iter();
+        let tooth: f64 = faces.map(|face| enclosed(&decoded(&face["positions"]), &numbers(&face["counts"]))).sum();
+        let (whole, exact) =
+            (tooth * body["teeth"].as_f64().expect("teeth"), solid["volume_mm3"].as_f64().expect("a volume"));
+        assert!((whole / exact - 1.0).abs() < 0.01, "{} of {exact} mm³: {}", whole, solid["name"]);
+    }
+}
+
+/// What a grid of points encloses with the origin, mm³.
+fn enclosed(positions: &[f64], counts: &[f64]) -> f64 {
+    let [rows, columns] = [0, 1].map(|k| counts[k] as usize);
+    let point = |i: usize, j: usize| [0, 1, 2].map(|k| positions[3 * (i * columns + j) + k]);
+    let volume = |[a, b, c]: [[f64; 3]; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|k| b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3]);
+        (a[0] * x + a[1] * y + a[2] * z) / 6.0
+    };
+    let cells = (1..rows).flat_map(|i| (1..columns).map(move |j| (i, j)));
+    let triangles = cells.flat_map(|(i, j)| {
+        let [a, b, c, d] = [point(i - 1, j - 1), point(i - 1, j), point(i, j), point(i, j - 1)];
+        [[a, b, c], [a, c, d]]
+    });
+    triangles.map(volume).sum()
+}
+
 /// Both sides of a spur pair touch along lines: no ellipse, no error; all surfaces of both tooth spaces are members.
 #[test]
 fn line_contact_and_both_sides() {
@@ -458,6 +502,47 @@ fn the_page_works_in_a_browser() {
     assert!(measured["opened_ms"].as_u64().expect("a time") < 20_000, "{measured}");
 }
 
+/// Every machine of a job can be chosen, also one of which nothing is sampled: `tests/page/machines.mjs`.
+#[test]
+fn all_machines_are_shown_in_the_browser() {
+    let folder = folder("view_machines_browser");
+    if !browser_is_there() {
+        return;
+    }
+    for spec in ["specs/hobbing/real_hob.chain", "specs/bodies/worm_and_wheel_body.chain"] {
+        let (file, _) = page(spec, &folder);
+        let arguments = [file.as_path(), folder.as_path()].map(|path| path.to_str().expect("a plain path"));
+        let told = node("machines.mjs", &arguments, &Value::Null).expect("node drives the browser");
+        eprintln!("in the browser: {told}");
+    }
+}
+
+/// No table is wider than a sheet of A4: `tests/page/printed.mjs`.
+#[test]
+fn reports_fit_their_paper_in_a_browser() {
+    let folder = folder("view_printed_browser");
+    if !browser_is_there() {
+        return;
+    }
+    let long = "flank_with_a_name_that_goes_on_and_on_and_on_until_the_end_of_the_line";
+    let gear = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let long = written(&folder, "long.chain", &gear.replace("flank_plus", long));
+    let out = folder.to_str().expect("a plain path");
+    for spec in [BEVEL_PAIR, "specs/hobbing/worm_wheel.chain", &long] {
+        let run = flank(&["report", spec, "--out", out]);
+        assert!(matches!(run.status.code(), Some(0 | 3)), "{}", text(&run.stderr));
+    }
+    let reports = std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry").path());
+    let reports: Vec<String> = reports
+        .filter(|path| path.extension().is_some_and(|end| end == "html"))
+        .map(|path| path.display().to_string())
+        .collect();
+    assert_eq!(reports.len(), 4);
+    let arguments: Vec<&str> = [out].into_iter().chain(reports.iter().map(String::as_str)).collect();
+    let told = node("printed.mjs", &arguments, &Value::Null).expect("node drives the browser");
+    assert!(told["tables"].as_u64() > Some(40) && told["wide"] == json!([]), "{told}");
+}
+
 /// Camera, sliders and colouring stay when the spec is saved; a wrong spec greys the last good picture: `tests/page/following.mjs`.
 #[test]
 fn the_page_that_follows_keeps_what_is_seen_in_a_browser() {
@@ -483,8 +568,13 @@ fn the_page_that_follows_keeps_what_is_seen_in_a_browser() {
         "other": text.replace("param teeth : count = 20", "param teeth : count = 21"),
         "wrong": text.replace("drive m.C = roll", "drive m.C = rol"),
         "code": "E0201",
+        "empty": text.replacen("z: -10 mm .. 10 mm", "z: 500 mm .. 510 mm", 2),
+        "gone": text.replace("job first_gear", "job renamed_gear"),
+        "jobs": ["first_gear", "first_helical_gear"],
+        "server": child.id(),
+        "folder": folder,
     });
-    assert!(expected["other"] != json!(text) && expected["wrong"] != json!(text));
+    assert!(["other", "wrong", "empty", "gone"].iter().all(|other| expected[other] != json!(text)));
     let measured = node("following.mjs", &[address.trim(), spec.to_str().expect("a plain path")], &expected);
     let _ = child.kill();
     let _ = child.wait();

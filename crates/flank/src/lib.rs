@@ -117,7 +117,7 @@ pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
 pub use page::{page_texts, view};
-pub use project::answer::{Answer, Timing};
+pub use project::answer::{Answer, Timed, Timing};
 pub use project::choices::{
     BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,
     PlotKind, PointFormat, ReportFormat, SolidPart, TableFormat, UnknownChoice,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
@@ -17,6 +17,7 @@ from flank._quantities import Quantity, errors, names, text
 
 Path_ = str | os.PathLike[str]
 R = TypeVar("R")
+T = TypeVar("T")
 
 
 def single(found: dict[str, R], what: str) -> R:
@@ -34,6 +35,13 @@ def margin_shares(margin: tuple[float, float] | None) -> list[float] | None:
     if len(shares) != 2 or not all(0 <= share < 0.5 for share in shares):
         raise InputError(f"`margin` is {margin!r}: write two shares from 0 up to 0.5, from root to tip and along the tooth")
     return shares
+
+
+def several(value: Sequence[T], what: str, *of: str) -> Sequence[T]:
+    """As many values as there are things."""
+    if not isinstance(value, tuple | list) or len(value) != len(of):
+        raise InputError(f"`{what}` is {value!r}: write {len(of)} values, {', '.join(of[:-1])} and {of[-1]}")
+    return value
 
 
 def mounting_errors(values: Mapping[str, Quantity] | None) -> list[tuple[str, str, float]]:
@@ -99,6 +107,14 @@ class Measured:
     def __init__(self, of: Path_ | npt.ArrayLike | None) -> None:
         self._of = of
         self._folder: tempfile.TemporaryDirectory[str] | None = None
+
+    @property
+    def counts(self) -> tuple[int | None, int | None]:
+        """Rows and columns of positions, also where the last ones were not measured; what a file has is found out by its reader."""
+        if self._of is None or isinstance(self._of, str | os.PathLike):
+            return None, None
+        shape = np.shape(self._of)
+        return (shape[0], shape[1]) if len(shape) == 3 else (None, None)
 
     def __enter__(self) -> tuple[str | None, str]:
         if self._of is None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +23,7 @@ from flank._arguments import (
     mounting_errors,
     parabola,
     ranges,
+    several,
     single,
 )
 from flank._errors import InputError
@@ -144,6 +145,12 @@ class Job:
             return self._surfaces[name]
         raise KeyError(f"there is no surface `{name}`; there is: {', '.join(self._surfaces)}")
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._surfaces
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._surfaces)
+
     def with_values(self, values: Mapping[str, Quantity] | None = None, /, **more: Quantity) -> Job:
         """A new job with other values for parameters and settings.
 
@@ -238,7 +245,8 @@ class Job:
         'C3D8'
         """
         lows = (1, 1, 3)
-        sides = [count(size, f"elements[{k}]", lows[k], 1000) for k, size in enumerate(elements)]
+        of = several(elements, "elements", "up a flank", "along the tooth", "from flank to flank")
+        sides = [count(size, f"elements[{k}]", lows[k], 1000) for k, size in enumerate(of)]
         options = {
             "teeth": 0 if teeth is None else count(teeth, "teeth", 1, 10_000),
             "elements": sides,
@@ -268,7 +276,7 @@ class Job:
         >>> list(flank.load("specs/bevel/pinion_19x62.chain").plot("section").pictures)
         ['section']
         """
-        sides = [count(side, f"size[{k}]", 100, 10_000) for k, side in enumerate(size)]
+        sides = [count(side, f"size[{k}]", 100, 10_000) for k, side in enumerate(several(size, "size", "width", "height"))]
         options = {
             "what": names(what),
             "surface": names(surface),
@@ -364,9 +372,10 @@ class Job:
         >>> job.inspect("concave", made.measuring_grid("concave", 5, 9).xyz).um.shape
         (5, 9)
         """
+        known = Measured(measured).counts
         options = {
-            "rows": count(rows, "rows", 1, 10_000),
-            "columns": count(columns, "columns", 1, 10_000),
+            "rows": count(known[0] if rows is None else rows, "rows", 1, 10_000),
+            "columns": count(known[1] if columns is None else columns, "columns", 1, 10_000),
             "margin": margin_shares(margin),
             "no_align": not align,
         }
@@ -415,10 +424,14 @@ class Job:
         >>> round(fit["identification"]["settings"][0]["new"], 4)
         98.0
         """
+        of = measured._measured if isinstance(measured, _results.Deviation) else measured
+        known, second_known = Measured(of).counts, Measured(None if also is None else also[1]).counts
+        # both have one grid, or each its own
+        known = known if also is None or known == second_known else (None, None)
         base: dict[str, Any] = {
             "vary": names(vary),
-            "rows": count(rows, "rows", 1, 10_000),
-            "columns": count(columns, "columns", 1, 10_000),
+            "rows": count(known[0] if rows is None else rows, "rows", 1, 10_000),
+            "columns": count(known[1] if columns is None else columns, "columns", 1, 10_000),
             "margin": margin_shares(margin),
             "order": count(order, "order", 1, 2),
             "noise": length(noise, "noise"),
@@ -436,7 +449,6 @@ class Job:
         elif ease_off is not None:
             base["ease_off_table"] = os.fspath(ease_off)
         native, own = self._native, self[surface].name
-        of = measured._measured if isinstance(measured, _results.Deviation) else measured
 
         def asked(more: dict[str, Any]) -> tuple[_flank.Answer, str]:
             with Measured(of) as (file, inside), Measured(None if also is None else also[1]) as (second, _):

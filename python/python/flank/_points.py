@@ -154,8 +154,7 @@ class SurfacePoints:
         >>> flank.load("specs/bevel/pinion_19x62.chain").solve()["root"].why()
         ''
         """
-        own = [reason for reason in self._reasons if (reason["of"] or "").rsplit(".", 1)[-1] == self.name]
-        return "\n".join("\n  ".join([reason["message"], *reason["details"]]) for reason in own)
+        return "\n".join("\n  ".join([reason["message"], *reason["details"]]) for reason in self._reasons)
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
         """The columns of tables, point by point: `surface`, `i`, `j`, `x`, …, `status`, then the fields.

@@ -62,10 +62,12 @@ def _number(value: Any) -> str:
 def _of_pint(value: Any) -> str:
     if value.check("[length]"):
         return f"{_number(value.to('mm').magnitude)} mm"
-    if value.dimensionless and str(value.units) not in ("dimensionless", ""):
+    # percent and um/mm are numbers, degrees are not
+    plain = value.to_root_units() if value.dimensionless else value
+    if str(plain.units) == "radian":
         return f"{_number(value.to('radian').magnitude)} rad"
-    if value.dimensionless:
-        return _number(value.magnitude)
+    if str(plain.units) in ("dimensionless", ""):
+        return _number(plain.magnitude)
     raise InputError(f"a length, an angle or a number is wanted: not {value}")
 
 

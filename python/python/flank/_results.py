@@ -137,8 +137,12 @@ class Points(Result):
 
     def __init__(self, answer: Answer, again: Again) -> None:
         super().__init__(answer, again)
-        reasons = json.loads(answer.document())["not_done"] if any(_is_lacking(grid) for grid in answer.grids) else []
-        self._grids = {grid.name: SurfacePoints(grid, reasons) for grid in answer.grids}
+        told = json.loads(answer.document()) if any(_is_lacking(grid) for grid in answer.grids) else {"not_done": []}
+
+        def why(name: str) -> list[dict[str, Any]]:
+            return [reason for reason in told["not_done"] if reason["of"] in (name, f"{told['job']}.{name}")]
+
+        self._grids = {grid.name: SurfacePoints(grid, why(grid.name)) for grid in answer.grids}
 
     def __getitem__(self, name: str) -> Any:
         if name in self._grids:

@@ -15,7 +15,7 @@ use gen_lsp_types::{
 use serde_json::{Value, json};
 
 use crate::client::Client;
-use crate::support::folder;
+use crate::support::{folder, top};
 
 struct Session {
     client: Client,
@@ -42,6 +42,28 @@ fn the_server_says_what_the_sessions_say() {
         } else {
             assert_eq!(played, written, "{name}");
         }
+    }
+}
+
+/// What a change adds has the line ends of the text.
+#[test]
+fn changes_keep_the_line_ends_of_a_text() {
+    let text = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
+    let text = text.replace("    drive m.Y = reference_radius * roll\n", "");
+    for (uri, end) in [("file:///nowhere/unix.chain", "\n"), ("file:///nowhere/windows.chain", "\r\n")] {
+        let mut client = Client::start();
+        client.open(uri, &text.replace('\n', end));
+        let told = client.findings(uri);
+        let found = told
+            .diagnostics
+            .iter()
+            .find(|found| found.code == Some(gen_lsp_types::Code::String("E0501".to_string())))
+            .expect("an axis");
+        let params = json!({ "textDocument": { "uri": uri }, "range": found.range, "context": { "diagnostics": [] } });
+        let actions = client.ask("textDocument/codeAction", params).expect("actions");
+        let added = actions[0]["edit"]["changes"][uri][0]["newText"].as_str().expect("a text");
+        assert!(added.ends_with(end) && added.replace(end, "").find(['\n', '\r']).is_none(), "{added:?}");
+        assert_eq!(client.end(), Some(0));
     }
 }
 
@@ -198,7 +220,7 @@ impl Session {
                 assert!(matches!(prepared, Some(PrepareRenameResult::PrepareRenamePlaceholder(_)) | None));
                 params["newName"] = json!(new);
                 match self.client.ask("textDocument/rename", params.clone()) {
-                    Err(error) => error["message"].as_str().unwrap_or_default().to_string(),
+                    Err(error) => self.plain(error["message"].as_str().unwrap_or_default()),
                     Ok(_) => workspace_told(&self.client.typed::<RenameRequest>(params).unwrap_or_default()),
                 }
             }

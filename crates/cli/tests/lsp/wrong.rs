@@ -151,6 +151,14 @@ fn a_text_of_a_mebibyte_and_one_beyond_are_read() {
     let told = client.findings(uri);
     assert_eq!(told.diagnostics.len(), 1);
     assert_eq!(told.diagnostics[0].code, Some(gen_lsp_types::Code::String("E0004".to_string())));
+    // nothing is known of its text
+    for method in ["completion", "hover", "definition", "prepareRename"] {
+        let at = json!({ "textDocument": { "uri": uri }, "position": { "line": 4, "character": 11 } });
+        match client.ask(&format!("textDocument/{method}"), at) {
+            Ok(found) => assert!(found.is_null() || found["items"] == json!([]), "{method}: {found}"),
+            Err(error) => assert_eq!(method, "prepareRename", "{error}"),
+        }
+    }
     assert_eq!(client.end(), Some(0));
 }
 

@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { chromium } from "playwright-core";
 
 const [address, spec] = process.argv.slice(2);
-const { other, wrong, code } = JSON.parse(readFileSync(0, "utf8"));
+const { other, wrong, code, empty, gone, jobs: [first, second], server, folder } = JSON.parse(readFileSync(0, "utf8"));
 const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"],
@@ -76,6 +76,53 @@ writeFileSync(spec, other.replace(/$/, "\n"));
 await says("picture", "3");
 assert.equal(await filter(), "none");
 assert(!(await page.locator("#error").isVisible()));
+
+/** The thing that a click in the middle of an element meets. */
+const hit = (id) =>
+    page.evaluate((id) => {
+        const { x, y, width, height } = document.getElementById(id).getBoundingClientRect();
+        return document.elementFromPoint(x + width / 2, y + height / 2).id;
+    }, id);
+const job = () => page.evaluate(() => document.querySelector("iframe.shown").contentDocument.querySelector("#job").textContent);
+const showsJob = (name) =>
+    page.waitForFunction((name) => document.querySelector("iframe.shown")?.contentDocument.querySelector("#job")?.textContent === name, name);
+
+// another job is chosen, and stays
+assert.equal(await hit("jobs"), "jobs", "the menu lies under the picture");
+await page.locator("#jobs").selectOption(second);
+await showsJob(second);
+await page.locator("#jobs").selectOption(first);
+await showsJob(first);
+
+// a job without a point stays as it was, with the reason; the other one can be chosen
+writeFileSync(spec, empty);
+await says("picture", "3");
+await page.waitForSelector("body.old", { timeout: 60_000 });
+assert.match(await page.locator("#error").textContent(), /no point to show/);
+assert.equal(await hit("error"), "error", "the error lies under the picture");
+assert.equal(await job(), first);
+await page.screenshot({ path: `${folder}/empty.png` });
+await page.locator("#jobs").selectOption(second);
+await showsJob(second);
+assert(!(await page.locator("#error").isVisible()));
+await page.locator("#jobs").selectOption(first);
+assert(await page.locator("#error").isVisible());
+writeFileSync(spec, other);
+await says("picture", "5");
+await page.waitForFunction(() => !document.body.classList.contains("old"), { timeout: 60_000 });
+assert.equal(await job(), first);
+
+// a job that is no more is not replaced in silence
+writeFileSync(spec, gone);
+await says("picture", "6");
+assert.match(await page.locator("#error").textContent(), new RegExp(`no job ${first} any more`));
+await page.screenshot({ path: `${folder}/gone.png` });
+
+// nor does the page stay silent when nobody serves it
+process.kill(server);
+await page.waitForSelector("body.old", { timeout: 60_000 });
+assert.match(await page.locator("#error").textContent(), /has ended/);
+await page.screenshot({ path: `${folder}/ended.png` });
 assert.deepEqual(errors, []);
 await browser.close();
 console.log(JSON.stringify({ followed_ms: Math.round(followed) }));

@@ -136,7 +136,8 @@ fn write_table(caption: &str, columns: &[Column], rows: &[Vec<String>], out: &mu
         let joined = if row.first().is_some_and(String::is_empty) { " class=\"same\"" } else { "" };
         write!(out, "<tr{joined}>")?;
         for (column, cell) in columns.iter().zip(row) {
-            write!(out, "<td{}>{}</td>", class(column.kind), shown(column.kind, cell))?;
+            let class = if is_amount(column.kind, cell) { " class=\"k\"" } else { class(column.kind) };
+            write!(out, "<td{class}>{}</td>", shown(column.kind, cell))?;
         }
         writeln!(out, "</tr>")?;
     }
@@ -147,11 +148,25 @@ fn write_table(caption: &str, columns: &[Column], rows: &[Vec<String>], out: &mu
 /// A cell: numbers with a real minus sign, names in pieces that fit on a line.
 fn shown(kind: Kind, cell: &str) -> String {
     match kind {
+        Kind::Words | Kind::Sentences if cell.split_whitespace().any(is_long) => in_pieces(cell),
         Kind::Words | Kind::Sentences => escaped(cell),
         Kind::Numbers => escaped(&with_minus(cell)),
-        Kind::Code if cell.chars().count() > LONG_NAME => escaped(cell).replace('_', "_<wbr/>"),
+        Kind::Code if is_long(cell) => in_pieces(cell),
         Kind::Code => escaped(cell),
     }
+}
+
+/// A number with its unit, which stays on one line.
+fn is_amount(kind: Kind, cell: &str) -> bool {
+    kind == Kind::Words && !is_long(cell) && cell.starts_with(|letter: char| letter.is_ascii_digit())
+}
+
+fn is_long(text: &str) -> bool {
+    text.chars().count() > LONG_NAME
+}
+
+fn in_pieces(text: &str) -> String {
+    escaped(text).replace('_', "_<wbr/>")
 }
 
 fn class(kind: Kind) -> &'static str {

@@ -76,7 +76,7 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
     let remarks = measured.opposite().into_iter().chain(trimmed(&measured, session)).collect();
     Ok(DeviationResult {
         remarks: origin.located(&measured.jobs(), remarks),
-        timing: Timing { points: measured.points.len(), elapsed: start.elapsed() },
+        timing: Timing { points: measured.points.len(), elapsed: start.elapsed(), ..Timing::default() },
         ..result
     })
 }

@@ -60,7 +60,7 @@ pub fn contact(
     let session = Session::new(request.evaluator, monitor).with_points_alone();
     for (job, contact) in asked(&jobs, request)? {
         let result = of_contact(job, contact, request, &origin, session)?;
-        each(ContactResult { timing: Timing { points: result.timing.points, elapsed: start.elapsed() }, ..result });
+        each(ContactResult { timing: Timing { elapsed: start.elapsed(), ..result.timing }, ..result });
     }
     Ok(())
 }

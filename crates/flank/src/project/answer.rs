@@ -30,17 +30,33 @@ pub trait Answer: Display + Serialize + Send + Sync + 'static {
     }
 }
 
-/// How long the points of a result took. Its [`Display`] is `231 points in 12 ms`.
+/// What is counted where times are told.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Timed {
+    /// Points of surfaces.
+    #[default]
+    Points,
+    /// Cases of a study.
+    Cases,
+}
+
+/// How long the points of a result took, or its cases. Its [`Display`] is `231 points in 12 ms`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Timing {
-    /// Points asked for.
+    /// As many were asked for.
     pub points: usize,
+    /// What these are.
+    pub what: Timed,
     /// From the request to the result.
     pub elapsed: Duration,
 }
 
 impl Display for Timing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} in {:.0} ms", units::counted(self.points, "point"), self.elapsed.as_secs_f64() * 1e3)
+        let what = match self.what {
+            Timed::Points => "point",
+            Timed::Cases => "case",
+        };
+        write!(f, "{} in {:.0} ms", units::counted(self.points, what), self.elapsed.as_secs_f64() * 1e3)
     }
 }

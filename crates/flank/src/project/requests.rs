@@ -40,8 +40,11 @@ impl JobSelection {
     }
 
     /// # Errors
-    /// If one name is set twice, whatever the file says.
+    /// If one name is empty or set twice, whatever the file says.
     pub(crate) fn check(&self) -> Result<(), Failure> {
+        if self.set.iter().any(|(name, _)| name.trim().is_empty()) {
+            return Err(Failure::Request("a value is set without a name: name a parameter or a setting".to_string()));
+        }
         let twice =
             self.set.iter().enumerate().find(|(k, (name, _))| self.set[..*k].iter().any(|(known, _)| known == name));
         match twice {

@@ -134,7 +134,7 @@ fn solved_job(
         instructions: Instructions::of(wanted.session.instructions()),
         remarks: origin.located(&[job], remarks.concat()),
         not_done: origin.located(&[job], not_done),
-        timing: Timing { points, elapsed: start.elapsed() },
+        timing: Timing { points, elapsed: start.elapsed(), ..Timing::default() },
     })
 }
 

@@ -196,7 +196,7 @@ pub(crate) fn rename(snapshot: &Snapshot, params: RenameParams) -> Result<Option
     Ok(Some(WorkspaceEdit { changes: Some(changes), ..WorkspaceEdit::default() }))
 }
 
-/// Compiles the open specs with the new name: none may have more errors than before.
+/// Compiles the open specs with the new name: none may have more errors than before, and each name has to mean what it meant.
 fn check_renamed(snapshot: &Snapshot, edits: &[Edit]) -> Result<(), String> {
     let mut renamed = snapshot.clone();
     renamed.analyses = Default::default();
@@ -217,6 +217,9 @@ fn check_renamed(snapshot: &Snapshot, edits: &[Edit]) -> Result<(), String> {
             let found = renamed.analysis(path).findings();
             let told = found.first().map_or(String::new(), |first| format!(": {}", first.finding.message));
             return Err(format!("with this name {} would be wrong{told}", path.display()));
+        }
+        if let Some(told) = snapshot.analysis(path).first_other_meaning(&renamed.analysis(path)) {
+            return Err(format!("with this name {} would mean something else: {told}", path.display()));
         }
     }
     Ok(())

@@ -5,7 +5,7 @@ use std::io;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use flank::{EvaluatorOptions, Failure, JobSelection, Monitor, page_texts};
+use flank::{EvaluatorOptions, Failure, JobSelection, Monitor, Remark, RemarkKind, ViewResult, page_texts};
 use serde::Serialize;
 
 use crate::Spelling;
@@ -29,8 +29,12 @@ pub(super) struct Told {
     pub(super) spec: String,
     /// The jobs that have a page.
     pub(super) jobs: Vec<String>,
-    /// The one in front.
+    /// The one in front: the one that is asked for, else the first.
     pub(super) job: Option<String>,
+    /// The one that is asked for, if one is.
+    pub(super) asked: Option<String>,
+    /// The jobs that have none, and why.
+    pub(super) unshown: BTreeMap<String, String>,
     /// The first error, where the picture is older than the text.
     pub(super) error: Option<String>,
 }
@@ -101,21 +105,29 @@ impl Pages {
     fn make(&self, wish: &Wish) {
         let mut texts = BTreeMap::new();
         let mut jobs = Vec::new();
-        let mut unshown = Vec::new();
+        let newer = Newer { pages: self, idle: Mutex::default() };
+        let mut without = Vec::new();
         let made = page_texts(
             &wish.selection,
             self.evaluator,
-            &Newer(self),
+            &newer,
             &mut |job, text| {
                 texts.insert(job.to_string(), Arc::new(text));
                 jobs.push(job.to_string());
             },
-            &mut |result| unshown.extend(result.not_done.iter().map(|missing| missing.to_string())),
+            &mut |result| without.extend(result.bytes.is_none().then(|| (result.job.clone(), reasons(&result)))),
         );
+        let mut unshown = newer.idle.into_inner().unwrap_or_else(PoisonError::into_inner);
+        unshown.extend(without);
+        if made.is_ok() {
+            unshown.extend(wish.missing(&jobs, &unshown));
+        }
+        let unshown: BTreeMap<String, String> =
+            unshown.into_iter().map(|(job, reason)| (job, (self.spelled)(&reason))).collect();
         let error = match made {
             Err(Failure::Cancelled) => return,
             Err(failure) => Some(in_words(&failure)),
-            Ok(()) if texts.is_empty() => unshown.into_iter().next(),
+            Ok(()) if texts.is_empty() => unshown.values().next().cloned(),
             Ok(()) => None,
         };
         let mut state = self.state();
@@ -123,10 +135,11 @@ impl Pages {
         state.told.spec = flank::shown_path(wish.selection.file());
         state.told.error = error.map(|error| (self.spelled)(&error));
         if !texts.is_empty() {
-            let asked = wish.job.clone().filter(|job| jobs.contains(job));
             state.told.picture += 1;
-            state.told.job = asked.or_else(|| jobs.first().cloned());
+            state.told.asked = wish.job.clone();
+            state.told.job = wish.job.clone().or_else(|| jobs.first().cloned());
             state.told.jobs = jobs;
+            state.told.unshown = unshown;
             state.texts = texts;
         }
         drop(state);
@@ -134,12 +147,36 @@ impl Pages {
     }
 }
 
-/// Gives up what is older than another wish.
-struct Newer<'p>(&'p Pages);
+impl Wish {
+    /// The job that is asked for, where the spec has none of that name, and what there is.
+    fn missing(&self, shown: &[String], unshown: &BTreeMap<String, String>) -> Option<(String, String)> {
+        let job = self.job.as_ref().filter(|job| !shown.contains(job) && !unshown.contains_key(*job))?;
+        let failure = self.selection.project.job(job, &self.selection.set).err()?;
+        Some((job.clone(), in_words(&failure)))
+    }
+}
+
+/// Why a job has no page.
+fn reasons(result: &ViewResult) -> String {
+    result.not_done.iter().map(ToString::to_string).collect::<Vec<String>>().join("\n")
+}
+
+/// Gives up what is older than another wish, and hears which jobs ask for nothing.
+struct Newer<'p> {
+    pages: &'p Pages,
+    idle: Mutex<BTreeMap<String, String>>,
+}
 
 impl Monitor for Newer<'_> {
     fn is_cancelled(&self) -> bool {
-        self.0.state().wish.is_some()
+        self.pages.state().wish.is_some()
+    }
+
+    fn remark(&self, remark: &Remark) {
+        if let (RemarkKind::NoSample, Some(job)) = (remark.kind, &remark.of) {
+            let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
+            idle.insert(job.clone(), remark.message.clone());
+        }
     }
 }
 

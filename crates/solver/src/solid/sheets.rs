@@ -1,11 +1,14 @@
 //! The surface of a body, or of some of its teeth, as sheets of points: for who draws it, face by face.
 
+use std::f64::consts::TAU;
+
 use crate::solid::arrangement::{Arrangement, Polar};
 use crate::solid::body::{Body, shifted};
 use crate::solid::section::{Fineness, Layout};
 
-/// Cells of a turned face from the middle of a space to the middle of the next.
+/// Cells of a turned face from the middle of a space to the middle of the next at the least, and of a whole turn.
 const AROUND: usize = 4;
+const WHOLE_TURN: f64 = 64.0;
 /// Cells along an arc of the outline.
 const ALONG_ARC: usize = 12;
 
@@ -76,6 +79,19 @@ impl Body {
             sheets.push(turned(&behind, last));
         }
         sheets
+    }
+}
+
+impl Body {
+    /// The angles that a tooth turns through: from the middle of a space to the middle of the next, and along it; none of a straight body.
+    pub fn turns(&self, fineness: &Fineness) -> [f64; 2] {
+        if !self.arrangement().is_closed() {
+            return [0.0; 2];
+        }
+        let (across, along) = Body::shares_of(fineness);
+        let [lines, _] = self.tooth_lines(0, &across, &along);
+        let middle = |line: &[Polar]| line[line.len() / 2][2];
+        [self.pitch(), (middle(&lines[lines.len() - 1]) - middle(&lines[0])).abs()]
     }
 }
 
@@ -178,6 +194,10 @@ impl<'b> Section<'b> {
         let whole: f64 = rest.iter().map(|segment| segment.length()).sum();
         let middles = |j: usize| self.lines.map(|lines| lines[j][self.layout.middle][2]);
         let (from, to) = (middles(self.places.len() - 1), middles(0));
+        let around = match self.body.arrangement() {
+            Arrangement::Round => AROUND.max((WHOLE_TURN * (to[1] - to[0]).abs() / TAU).ceil() as usize),
+            Arrangement::Straight { .. } => AROUND,
+        };
         let mut before = 0.0;
         rest.iter()
             .map(|segment| {
@@ -189,12 +209,12 @@ impl<'b> Section<'b> {
                     let [start, end] = [0, 1].map(|k| from[k] + (to[k] - from[k]) * way);
                     [z, rho, start + turn * (end - start)]
                 };
-                let row = |turn: usize| (0..=cells).map(move |k| step(k, turn as f64 / AROUND as f64));
-                let places = (0..=AROUND).flat_map(row).collect();
+                let row = |turn: usize| (0..=cells).map(move |k| step(k, turn as f64 / around as f64));
+                let places = (0..=around).flat_map(row).collect();
                 before += segment.length();
                 Piece {
                     face: SheetFace::Blank,
-                    counts: [AROUND + 1, cells + 1],
+                    counts: [around + 1, cells + 1],
                     ends: [false, false, true, true],
                     places,
                 }

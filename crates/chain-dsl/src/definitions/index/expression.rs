@@ -28,6 +28,10 @@ const OF_POINTS: [&str; 19] = [
     "mean_curvature",
 ];
 
+/// Of these, what stands for a point's own before anything of that name in the job: its coordinates, and where it is known its curvatures.
+const FIRST: [&str; 8] = ["x", "y", "z", "rho", "polar_angle", "nx", "ny", "nz"];
+const CURVATURES: [&str; 4] = ["k1", "k2", "gaussian_curvature", "mean_curvature"];
+
 /// Where an expression stands.
 #[derive(Clone, Default)]
 pub(super) struct Place<'a> {
@@ -39,11 +43,31 @@ pub(super) struct Place<'a> {
     pub(super) surfaces: Vec<SymbolId>,
     /// Whether coordinates of points and names of columns mean something.
     pub(super) is_at_points: bool,
+    /// Whether it is evaluated at points, where these come before names of the job.
+    pub(super) evaluated: At,
+}
+
+/// Where an expression is evaluated.
+#[derive(Clone, Copy, Default, PartialEq, Eq)]
+pub(super) enum At {
+    /// Once.
+    #[default]
+    Once,
+    /// At points of surfaces.
+    Points,
+    /// At points whose curvatures are known, too.
+    SolvedPoints,
 }
 
 impl<'a> Place<'a> {
     pub(super) fn of(item: SymbolId) -> Place<'a> {
         Place { item: Some(item), ..Place::default() }
+    }
+
+    /// Whether a name means a coordinate, or a curvature, of the point at which it is evaluated.
+    fn is_of_point(&self, name: &str) -> bool {
+        let is_known = self.evaluated == At::SolvedPoints && CURVATURES.contains(&name);
+        self.evaluated != At::Once && (is_known || FIRST.contains(&name))
     }
 }
 
@@ -87,8 +111,16 @@ impl<'a> Names<'a> {
         if let Some((_, id)) = place.locals.iter().rev().find(|(local, _)| *local == name) {
             return Target::Symbol(*id);
         }
-        let own = place.item.and_then(|item| self.inside(item, name, Wanted::Value));
         let unknown = || place.surfaces.iter().find_map(|surface| self.unknown(*surface, name, 0));
+        if place.is_of_point(name) {
+            return Target::Word(WordKind::Coordinate);
+        }
+        if place.evaluated != At::Once
+            && let Some(id) = unknown()
+        {
+            return Target::Symbol(id);
+        }
+        let own = place.item.and_then(|item| self.inside(item, name, Wanted::Value));
         let coordinate = || {
             let known = self.coordinates.iter().rev().filter(|_| place.is_at_points);
             known.clone().find(|(known, _)| *known == name).map(|(_, id)| *id)
@@ -173,12 +205,17 @@ impl<'a> Names<'a> {
             None => self.enter(call.function.span, Target::Missing(NameKind::Function), false),
         }
         let is_table = ["table", "curve", "grid"].contains(&name);
-        for argument in &call.arguments {
+        // `lowest(flank, rho)`
+        let is_extreme = place.is_at_points && ["lowest", "highest"].contains(&name);
+        let evaluated = place.evaluated;
+        for (k, argument) in call.arguments.iter().enumerate() {
             if let Some(name) = &argument.name {
                 self.word(name.span, if is_table { WordKind::Column } else { WordKind::Argument });
             }
+            place.evaluated = if is_extreme && k == 1 { At::Points } else { evaluated };
             self.argument(&argument.value, is_table, place);
         }
+        place.evaluated = evaluated;
     }
 
     /// Whether the language brings a function, a transform or a way to make a surface along.

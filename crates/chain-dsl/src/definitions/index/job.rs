@@ -1,6 +1,6 @@
 //! The names in jobs.
 
-use super::expression::Place;
+use super::expression::{At, Place};
 use super::members::{Names, Wanted};
 use super::{NameKind, SymbolId, Target, WordKind};
 use crate::diagnostics::source::Name;
@@ -170,15 +170,10 @@ impl<'a> Names<'a> {
     /// A coordinate that points are asked for by, perhaps defined here.
     fn coordinate(&mut self, job: SymbolId, key: &'a Name, definition: Option<&'a Expression>, place: &mut Place<'a>) {
         let Some(definition) = definition else {
-            // coordinates of the points come before values of the job
-            let unknown = place.surfaces.iter().find_map(|surface| self.unknown(*surface, &key.node, 0));
-            let found = match unknown {
-                Some(id) => Target::Symbol(id),
-                None => self.value(&key.node, place),
-            };
+            let found = self.value(&key.node, &Place { evaluated: At::Points, ..place.clone() });
             return self.enter(key.span, found, false);
         };
-        self.expression(definition, place);
+        self.expression(definition, &mut Place { evaluated: At::Points, ..place.clone() });
         let id = self.define(NameKind::Coordinate, key, definition.span, Some(job));
         self.symbol_mut(id).value = Some(definition.span);
         self.coordinates.push((&key.node, id));
@@ -226,10 +221,10 @@ impl<'a> Names<'a> {
                 at.iter().for_each(|at| self.expression(at, place));
             }
             Expected::Near { surface, value, target, within } => {
-                self.expected_of(surface.as_ref(), [value, target, within], place);
+                self.expected_of(surface.as_ref(), (&[value, target], &[within]), place);
             }
             Expected::InRange { surface, value, range } => {
-                self.expected_of(surface.as_ref(), [value, &range.low, &range.high], place);
+                self.expected_of(surface.as_ref(), (&[value], &[&range.low, &range.high]), place);
             }
             // of machines only
             Expected::Pose { .. } => {}
@@ -237,7 +232,12 @@ impl<'a> Names<'a> {
     }
 
     /// Values at the points of a surface, or of surfaces that the values name themselves.
-    fn expected_of(&mut self, surface: Option<&'a Path>, values: [&'a Expression; 3], place: &mut Place<'a>) {
+    fn expected_of(
+        &mut self,
+        surface: Option<&'a Path>,
+        (at_points, once): (&[&'a Expression], &[&'a Expression]),
+        place: &mut Place<'a>,
+    ) {
         let named =
             |names: &Self, path: &Path, place: &Place<'a>| match names.value(&path.segments.first()?.node, place) {
                 Target::Symbol(id) if [NameKind::Surface, NameKind::Sample].contains(&names.kind(id)) => Some(id),
@@ -247,7 +247,7 @@ impl<'a> Names<'a> {
             self.surface(path, place);
             place.surfaces.extend(named(self, path, place));
         }
-        for value in values {
+        for value in at_points.iter().chain(once) {
             value.each(&mut |part| {
                 if let ExpressionKind::Path(path) = &part.kind {
                     let found = named(self, path, place);
@@ -255,7 +255,13 @@ impl<'a> Names<'a> {
                 }
             });
         }
-        for value in values {
+        // `flank near [x, 0 mm, z]` names the surface as a value
+        let is_named = |value: &&Expression| matches!(&value.kind, ExpressionKind::Path(path) if named(self, path, place).is_some());
+        let is_of_surface = surface.is_some() || at_points.first().is_some_and(is_named);
+        let evaluated = if is_of_surface { At::SolvedPoints } else { At::Once };
+        let values = at_points.iter().map(|value| (value, evaluated)).chain(once.iter().map(|value| (value, At::Once)));
+        for (value, evaluated) in values {
+            place.evaluated = evaluated;
             // a surface, or a value
             match &value.kind {
                 ExpressionKind::Path(path) => {

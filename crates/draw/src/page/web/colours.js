@@ -5,6 +5,9 @@ import { digits, ticks } from "./numbers.js";
 /** Of lines and letters. */
 export const INK = 0x333333;
 
+/** An end of a range that is no larger, of the other end, is zero. */
+const BY_ROUNDING = 1e-9;
+
 /** Components 0 to 1 of `#rrggbb`. */
 export function components(hex) {
     return [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16) / 255);
@@ -31,6 +34,7 @@ export function rangeOf(surfaces, name) {
     }
     if (low > high) return null;
     const most = Math.max(-low, high);
+    [low, high] = [low, high].map((end) => (Math.abs(end) < BY_ROUNDING * most ? 0 : end));
     return { low, high, about: { low: -most, high: most, ends: [low, high] } };
 }
 

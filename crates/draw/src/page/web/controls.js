@@ -6,6 +6,9 @@ import { withUnit } from "./numbers.js";
 
 /** Seconds that a motion takes from end to end when it plays. */
 const PLAY = 8;
+const SLIDER = "input[type=range]";
+/** What takes letters for itself. */
+const TYPED_INTO = "select, textarea, input:not([type=checkbox], [type=range])";
 /** A setting that is no larger is zero. */
 const ZERO = 1e-12;
 
@@ -56,7 +59,11 @@ export function buildChoices(page) {
     const choice = (name, control) => show.append(element("label", { className: "choice" }, element("span", { textContent: name }), control));
     const select = (id, change) => {
         const made = element("select", { id });
-        made.addEventListener("change", () => change(made.value));
+        made.addEventListener("change", () => {
+            change(made.value);
+            // who chose with the mouse goes on with the keys of the view
+            if (!made.matches(":focus-visible")) made.blur();
+        });
         return made;
     };
     if (page.machines.length > 1) {
@@ -84,6 +91,7 @@ export function buildChoices(page) {
     page.framesChoice.append(new Option("all", "all"), new Option("of tool and work", "some"), new Option("none", "none"));
     choice("frames", page.framesChoice);
     page.bodyBox = tick("body", "whole gear", true, () => showBodies(page));
+    if (page.data.bodies.length === 0) page.bodyBox.parentElement.remove();
     tick("blank", "outline of revolution", false, (isOn) => {
         page.blanks.forEach((blank) => (blank.visible = isOn));
         page.stage.request();
@@ -163,7 +171,8 @@ export function tellState(page) {
 }
 
 export function listSurfaces(page) {
-    byId("surfaces").replaceChildren(...page.visible.map((mesh) => {
+    if (page.visible.length === 0) return byId("surfaces").replaceChildren("no surface of this machine is sampled");
+    return byId("surfaces").replaceChildren(...page.visible.map((mesh) => {
         const box = element("input", { type: "checkbox", checked: mesh.object.visible });
         box.addEventListener("change", () => {
             mesh.object.visible = box.checked;
@@ -200,14 +209,12 @@ export function listen(page) {
         if (Math.hypot(event.clientX - x, event.clientY - y) < 4) page.click(event.offsetX, event.offsetY);
     });
     window.addEventListener("keydown", (event) => {
-        if (event.target.closest("input, select, textarea") || event.ctrlKey || event.metaKey || event.altKey) return;
+        if (event.ctrlKey || event.metaKey || event.altKey || event.target.closest(TYPED_INTO)) return;
         const ways = { ArrowUp: [-1, 0], ArrowDown: [1, 0], ArrowLeft: [0, -1], ArrowRight: [0, 1] };
-        if (ways[event.key] && page.selected) {
+        const fits = { f: () => page.fitAll(), w: () => page.fitWork(), g: () => page.fitGear() };
+        if (ways[event.key] && page.selected && !event.target.closest(SLIDER)) {
             page.step(ways[event.key]);
             event.preventDefault();
-        } else if (event.key === "f") page.fitAll();
-        else if (event.key === "w") page.fitWork();
-        else if (event.key === "g") page.fitGear();
-        else if (event.key === "g") page.fitGear();
+        } else fits[event.key.toLowerCase()]?.();
     });
 }

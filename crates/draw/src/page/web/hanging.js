@@ -7,6 +7,8 @@ import { decoded } from "./numbers.js";
 const FAINT = 0x707070;
 const LOST = 0xbe0000;
 const TOOL = "#7d90a3";
+/** Where the eye stands if there is neither work nor tool. */
+const NOTHING_SEEN_FROM = [0.8, 0.4, 0.5];
 
 export function hangTools(page) {
     page.toolParts?.forEach((part) => part.removeFromParent());
@@ -99,11 +101,17 @@ export function triadSize(page) {
         const solved = Array.from({ length: surface.count }, (_, point) => point).filter((point) => surface.isSolved(point));
         return solved.map((point) => new THREE.Vector3(...surface.vector(surface.positions, point)));
     });
-    if (points.length === 0) return 10;
+    if (points.length === 0) return sizeOfFrames(page.machine);
     const box = new THREE.Sphere().setFromPoints(points);
     const far = points.reduce((most, point) => Math.max(most, Math.hypot(point.x, point.y)), 0);
     // beside teeth in mesh they would hide what is looked at
     return (page.pair ? 0.4 : 1) * Math.max(0.5 * box.radius, 0.2 * far, 1e-3);
+}
+
+/** The same where a machine has frames only: a part of how far these lie apart. */
+function sizeOfFrames(machine) {
+    const places = machine.data.frames.map((_, k) => new THREE.Vector3().setFromMatrixPosition(machine.pose(k)));
+    return 0.25 * new THREE.Sphere().setFromPoints(places).radius || 10;
 }
 
 /** The direction from which most is seen of the first surface's outer side, and tool and work lie least behind each other. */
@@ -120,6 +128,7 @@ export function eye(page) {
         }
     }
     for (const part of page.toolParts) points.push(...verticesOf(part).map((place) => place.applyMatrix4(part.parent.matrix)));
+    if (points.length === 0) return NOTHING_SEEN_FROM;
     const ways = [0.35, 0.7, 1.2].flatMap((height) => Array.from({ length: 16 }, (_, k) => {
         const turn = (k * Math.PI) / 8;
         return new THREE.Vector3(Math.cos(turn), Math.sin(turn), height).normalize();

@@ -115,7 +115,8 @@ class Page {
         listSurfaces(this);
         listQuantities(this);
         listFrames(this);
-        this.framesChoice.value = this.machine.data.frames.length > MOST_FRAMES ? "some" : "all";
+        const isSome = this.visible.length > 0 && this.machine.data.frames.length > MOST_FRAMES;
+        this.framesChoice.value = isSome ? "some" : "all";
         this.showFrames(this.framesChoice.value);
         this.colourBy(this.quantity);
         this.update();

@@ -96,10 +96,11 @@ export class Stage {
         this.request();
     }
 
-    /** Brings the eye so far away that these things fill the view; `towards` is where it then stands, if it is to turn. */
+    /** Brings the eye so far away that these things fill the view, or the frames if there are none; `towards` is where it then stands, if it is to turn. */
     fit(objects, towards) {
         this.scene.updateMatrixWorld(true);
-        const points = objects.flatMap((object) => cornersOf(object));
+        const ofThings = objects.flatMap((object) => cornersOf(object));
+        const points = ofThings.length > 0 ? ofThings : this.frames.flatMap((frame) => cornersOf(frame));
         if (points.length === 0) return;
         const sphere = new THREE.Sphere().setFromPoints(points);
         const way = towards ?? this.camera.position.clone().sub(this.controls.target);

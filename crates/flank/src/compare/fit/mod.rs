@@ -89,7 +89,7 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
         files,
         not_done: origin.located(&[of.job], result.not_done.clone()),
         remarks: origin.located(&[of.job], result.remarks.clone()),
-        timing: Timing { points: problem.count(), elapsed: start.elapsed() },
+        timing: Timing { points: problem.count(), elapsed: start.elapsed(), ..Timing::default() },
         ..result
     })
 }

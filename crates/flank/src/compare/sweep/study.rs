@@ -12,7 +12,7 @@ use super::plan::Plan;
 use super::request::StudyChunks;
 use super::result::SweepResult;
 use super::row::Cases;
-use crate::project::answer::Timing;
+use crate::project::answer::{Timed, Timing};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
 use crate::project::requests::JobSelection;
@@ -82,7 +82,7 @@ impl OpenStudy {
             work.chunk(chunk, again, &mut tally)?;
         }
         let points = chunks.map(|chunk| plan.numbers(chunk).count()).sum();
-        let timing = Timing { points, elapsed: start.elapsed() };
+        let timing = Timing { points, what: Timed::Cases, elapsed: start.elapsed() };
         Ok(SweepResult { timing: Some(timing), ..SweepResult::of(&self.folder, plan, tally) })
     }
 }

@@ -76,7 +76,7 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
         files: Vec::new(),
         not_done: Vec::new(),
         remarks: problem.idle(request),
-        timing: Timing { points: 1, elapsed: start.elapsed() },
+        timing: Timing { points: 1, elapsed: start.elapsed(), ..Timing::default() },
     };
     verdict::judge(&mut result, (&members, &conditions), (&problem, &found), checked.as_ref());
     if let Some(file) = request.write.as_ref().filter(|_| !values.is_empty()) {

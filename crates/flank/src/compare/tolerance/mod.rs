@@ -113,7 +113,7 @@ pub fn tolerance(request: &ToleranceRequest, monitor: &dyn Monitor) -> Result<To
         sweep,
         not_done: origin.located(&[of.job], not_done),
         remarks: origin.located(&[of.job], remarks),
-        timing: Timing { points: flank.known(), elapsed: start.elapsed() },
+        timing: Timing { points: flank.known(), elapsed: start.elapsed(), ..Timing::default() },
     })
 }
 

@@ -61,7 +61,7 @@ pub fn mill(request: &MillRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(M
     let session = Session::new(request.evaluator, monitor);
     for (job, milling) in asked(&jobs, request)? {
         let result = of_milling(job, milling, request, &origin, session)?;
-        each(MillResult { timing: Timing { points: result.timing.points, elapsed: start.elapsed() }, ..result });
+        each(MillResult { timing: Timing { elapsed: start.elapsed(), ..result.timing }, ..result });
     }
     Ok(())
 }

@@ -86,7 +86,8 @@ impl Analysis {
         let of_main = || self.text_span(start).unwrap_or_else(|| self.shown_span(start));
         let notes = diagnostic.notes.iter();
         let cures = diagnostic.cures.iter().filter_map(|cure| {
-            let edit = TextEdit { span: self.text_span(cure.span)?, replacement: cure.replacement.clone() };
+            let replacement = self.with_line_ends_of(cure.span.file, &cure.replacement);
+            let edit = TextEdit { span: self.text_span(cure.span)?, replacement };
             Some(TextCure { title: cure.title.clone(), edit })
         });
         LocatedFinding {
@@ -95,6 +96,12 @@ impl Analysis {
             cures: cures.collect(),
             finding,
         }
+    }
+
+    /// A text of several lines as it is written into a file.
+    fn with_line_ends_of(&self, file: FileId, text: &str) -> String {
+        let is_windows = self.sources.file(file).text.contains("\r\n");
+        if is_windows { text.replace("\r\n", "\n").replace('\n', "\r\n") } else { text.to_string() }
     }
 
     /// The files that were read, without links and `..`, the spec itself first.

@@ -109,6 +109,10 @@ impl List<'_> {
 impl Analysis {
     /// What may be written at a byte of the spec, in the order of use.
     pub fn completions(&self, offset: usize) -> Vec<Completion> {
+        // of a file that is too large to be read there is no text
+        if !self.text().is_char_boundary(offset) {
+            return Vec::new();
+        }
         let cursor = Cursor::at(self.text(), offset);
         let Some(file) = self.files().into_iter().next() else { return Vec::new() };
         if cursor.is_quiet {

@@ -1,7 +1,7 @@
 //! A new name for something, everywhere.
 
 use flank_chain_dsl::syntax::{TokenKind, is_reserved, tokens};
-use flank_chain_dsl::{FileId, Symbol, SymbolId};
+use flank_chain_dsl::{FileId, Symbol, SymbolId, Target, WordKind};
 use thiserror::Error;
 
 use crate::language::editor::analysis::{Analysis, TextSpan};
@@ -76,6 +76,37 @@ impl Analysis {
         }
     }
 
+    /// The first name that leads elsewhere, or to another word of the language, once names are changed and nothing else: what it would mean
+    /// then, in words.
+    pub fn first_other_meaning(&self, renamed: &Analysis) -> Option<String> {
+        let (before, after) = (&self.index.entries, &renamed.index.entries);
+        // renaming moves places, and leaves their order and that of definitions
+        let other =
+            before.iter().zip(after).find(|(before, after)| !is_alike(self, before.target, renamed, after.target));
+        if let Some((before, after)) = other {
+            let (_, line, _) = renamed.sources.place(after.span);
+            let name = renamed.sources.text(after.span);
+            let [was, is] = [self.meaning(before.target), renamed.meaning(after.target)];
+            return Some(format!("`{name}` in line {line} would be {is}, and not {was}"));
+        }
+        (before.len() != after.len()).then(|| "names would be read otherwise".to_string())
+    }
+
+    /// What a name leads to, in words.
+    fn meaning(&self, target: Target) -> String {
+        match target {
+            Target::Symbol(id) => {
+                let Symbol { kind, name, .. } = self.index.symbol(id);
+                format!("the {} of line {}", kind.described(), self.sources.place(*name).1)
+            }
+            Target::File(_) => "a file".to_string(),
+            Target::Word(WordKind::Coordinate) => "the coordinate of a point".to_string(),
+            Target::Word(WordKind::Function) => "the function of the language".to_string(),
+            Target::Word(_) => "the word of the language".to_string(),
+            Target::Missing(kind) => format!("a {} that there is not", kind.described()),
+        }
+    }
+
     /// All that goes back to one definition.
     fn alike(&self, root: SymbolId) -> impl Iterator<Item = &Symbol> {
         let all = self.index.symbols.iter().zip(0u32..);
@@ -87,5 +118,13 @@ impl Analysis {
         let line = std::iter::successors(Some(id), |id| self.index.symbol(*id).definition);
         // as many steps as there are definitions: a circle is wrong, and ends here
         line.take(self.index.symbols.len()).any(|id| id == other)
+    }
+}
+
+/// Whether names lead to the same thing: definitions are in the same order whatever they are called.
+fn is_alike(of: &Analysis, target: Target, other_of: &Analysis, other: Target) -> bool {
+    match (target, other) {
+        (Target::Symbol(id), Target::Symbol(other)) => id == other && of.index.root(id) == other_of.index.root(other),
+        (target, other) => target == other,
     }
 }

@@ -18,6 +18,8 @@ const WHOLE: f64 = 1.0 / 600.0;
 const LARGE: f64 = 1.0 / 2000.0;
 /// Cells along the teeth of a whole gear at the most; more are not seen.
 const MOST_ALONG: usize = 12;
+/// A tooth that turns through more about the axis is seen to be bent, and has as many cells as its curves need.
+const BENT: f64 = TAU / 12.0;
 /// Rows and columns of turned samples.
 const MOST_LINES: usize = 9;
 
@@ -131,7 +133,16 @@ fn whole(body: &Body) -> Fineness {
         Arrangement::Straight { pitch } => pitch * f64::from(body.teeth()),
     };
     let fineness = body.fineness(BodyPart::Gear, WHOLE * size);
-    Fineness { tooth: 2, rim: 1, along: fineness.along.min(MOST_ALONG), ..fineness }
+    let coarse = Fineness { tooth: 2, rim: 1, along: fineness.along.min(MOST_ALONG), ..fineness.clone() };
+    bent(body, fineness, coarse)
+}
+
+/// So many cells as a bent tooth needs, or else as coarse as straight ones are drawn.
+fn bent(body: &Body, fine: Fineness, coarse: Fineness) -> Fineness {
+    let [across, along] = body.turns(&fine);
+    let tooth = if across > BENT { fine.tooth.max(coarse.tooth) } else { coarse.tooth };
+    let along = if along > BENT { fine.along.max(coarse.along) } else { coarse.along };
+    Fineness { tooth, along, ..coarse }
 }
 
 fn large(body: &Body) -> Fineness {
@@ -141,7 +152,9 @@ fn large(body: &Body) -> Fineness {
         Arrangement::Straight { pitch } => pitch,
     };
     let size = (f64::from(SOME) * width).max(tip.length());
-    Fineness { tooth: 4, rim: 2, ..body.fineness(BodyPart::Tooth, LARGE * size) }
+    let fineness = body.fineness(BodyPart::Tooth, LARGE * size);
+    let coarse = Fineness { tooth: 4, rim: 2, ..fineness.clone() };
+    bent(body, fineness, coarse)
 }
 
 /// The sampled points of the surfaces of a space.
