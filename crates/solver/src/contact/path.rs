@@ -1,13 +1,14 @@
 //! A contact followed over the roll.
 
 use crate::contact::ContactProblem;
-use crate::contact::point::ContactPoint;
+use crate::contact::point::{ContactPoint, ContactState};
 use crate::contact::start::NoContact;
 use crate::equations::solution::Outcome;
 use crate::surface::points::SurfacePoint;
 
-/// Halvings of a step of the roll until the contact is lost: past a corner the end of a line of contact runs off many times as fast.
-const HALVINGS: u32 = 18;
+/// Halvings of a step of the roll until the contact is lost, in a point and along a line: past a corner the end of a line runs off many times
+/// as fast.
+const HALVINGS: [u32; 2] = [12, 18];
 /// Steps from one roll position to another until the contact is lost.
 const MOST_STEPS: usize = 200;
 /// A point this much farther from where it was expected than the way to it, as a share of that, is of another contact.
@@ -58,6 +59,7 @@ impl ContactProblem {
     /// The contact at another roll position, on the way from one that is known; `None` where it is lost.
     pub fn followed(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
         let mut at = from.clone();
+        let most = HALVINGS[usize::from(from.state == Some(ContactState::Line))];
         let mut halvings = 0;
         for _ in 0..MOST_STEPS {
             if at.roll == roll {
@@ -74,7 +76,7 @@ impl ContactProblem {
                     at = found;
                     halvings = halvings.saturating_sub(1);
                 }
-                None if halvings as u32 == HALVINGS => return None,
+                None if halvings as u32 == most => return None,
                 None => halvings += 1,
             }
         }
