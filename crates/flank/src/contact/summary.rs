@@ -303,7 +303,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         }
         if self.request.sensitivity && rolling.state() == Some(ContactState::Line) {
             let message = "the flanks touch along a line, and any change brings them to one of its ends: what mounting errors and settings \
-                           do is not proportional; `--error` and `--set` say what a value does"
+                           do is not proportional; the option `error` says what one of them does"
                 .to_string();
             told.push(remark(RemarkKind::NotLinear, name, message));
         }
