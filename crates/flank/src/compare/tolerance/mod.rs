@@ -73,7 +73,8 @@ pub fn tolerance(request: &ToleranceRequest, monitor: &dyn Monitor) -> Result<To
     let cases = match request.sweep {
         Some(count) => {
             let swept = Swept::new(of.job, &causes, (&flank, &matings));
-            Some(swept.cases(&scatter, count as usize, session)?)
+            let drawn = sweep::drawn(&scatter, count);
+            Some((swept.cases(&drawn, session)?, drawn.iter().filter(|off| swept.is_beyond(off)).count()))
         }
         None => None,
     };

@@ -28,6 +28,12 @@ pub(super) struct Swept<'a> {
     following: Tape,
 }
 
+/// By how much each cause is off, in so many cases.
+pub(super) fn drawn(scatter: &Scatter, count: u32) -> Vec<Vec<f64>> {
+    let mut draw = GaussianDraw::new(SEED);
+    (0..count).map(|_| scatter.drawn(&mut draw)).collect()
+}
+
 impl<'a> Swept<'a> {
     pub(super) fn new<'g>(
         job: &Job<'g>,
@@ -45,30 +51,21 @@ impl<'a> Swept<'a> {
         Swept { causes, flank, contacts, ranges, following }
     }
 
-    /// In each case the change of each number, `None` where something has no solution; and in how many of them a setting lies beyond its
-    /// range.
+    /// In each case the change of each number; `None` where something has no solution.
     ///
     /// # Errors
     /// If the work is cancelled.
-    pub(super) fn cases(
-        &self,
-        scatter: &Scatter,
-        count: usize,
-        session: Session<'_>,
-    ) -> Result<(Vec<Option<Vec<f64>>>, usize), Failure> {
-        let mut draw = GaussianDraw::new(SEED);
-        let drawn: Vec<Vec<f64>> = (0..count).map(|_| scatter.drawn(&mut draw)).collect();
-        let mut found = Vec::with_capacity(count);
+    pub(super) fn cases(&self, drawn: &[Vec<f64>], session: Session<'_>) -> Result<Vec<Option<Vec<f64>>>, Failure> {
+        let mut found = Vec::with_capacity(drawn.len());
         for cases in drawn.chunks(TOGETHER) {
             session.check()?;
             found.par_extend(cases.par_iter().map(|off| self.case(off)));
         }
-        let beyond = drawn.iter().filter(|off| self.is_beyond(off)).count();
-        Ok((found, beyond))
+        Ok(found)
     }
 
     /// Whether a setting has a value that its spec refuses.
-    fn is_beyond(&self, off: &[f64]) -> bool {
+    pub(super) fn is_beyond(&self, off: &[f64]) -> bool {
         let mut values = self.causes.iter().zip(off).zip(&self.ranges);
         values.any(|((of, off), range)| range.is_some_and(|(low, high)| !(low..=high).contains(&(of.value + off))))
     }
