@@ -86,6 +86,11 @@ impl ContactProblem {
     fn step(&self, from: &ContactPoint, roll: f64) -> Option<ContactPoint> {
         let expected = from.predicted(roll - from.roll)?;
         let found = self.touching_near(roll, &expected, &from.edges, from.first_normal.into())?;
+        // past a corner the end of a line of contact goes along another edge, however fast
+        let is_line = |point: &ContactPoint| point.state == Some(ContactState::Line);
+        if is_line(from) && is_line(&found) && found.edges != from.edges {
+            return Some(found);
+        }
         let share = |a: &[f64], b: &[f64]| {
             let off = a.iter().zip(b).zip(&self.ranges).map(|((a, b), range)| ((a - b) / range.width()).abs());
             off.fold(0.0, f64::max)
