@@ -292,12 +292,18 @@ fn lines_of_contact_last_from_corner_to_corner() {
     let working = ((pinion + gear) * base / 138.0).acos();
     let path = way(pinion + 5.25, pinion) + way(gear + 5.0, gear) - 138.0 * working.sin();
     let pitch = std::f64::consts::TAU * pinion * base / 21.0;
-    for slope in [0.0, 0.05, 0.1, 0.3, 0.7] {
+    // with a gear as wide as the pinion, and with one beside it: there edges of both cross where the line comes or leaves
+    let cases = [0.0, 0.0005, 0.05, 0.3, 0.7].into_iter().flat_map(|slope| [(slope, -12.0, 12.0), (slope, -7.0, 20.0)]);
+    for (slope, front, back) in cases {
         let set = format!("slope={slope}");
+        let [front_set, back_set] =
+            [("gear_front", front), ("gear_back", back)].map(|(name, z)| format!("{name}={z}mm"));
         let spec = "tests/machines/involute_pair.chain";
         let pair = ["contact", spec, "--no-picture", "--sensitivity", "--out", at];
-        let found = document(&[&pair[..], &["--set", &set]].concat(), 0);
-        let ratio = (path + 24.0 * slope) / pitch;
+        let values = ["--set", &set, "--set", &front_set, "--set", &back_set];
+        let found = document(&[&pair[..], &values].concat(), 0);
+        let common = f64::min(back, 12.0) - f64::max(front, -12.0);
+        let ratio = (path + common * slope) / pitch;
         assert!((number(&found, "ratio") - ratio).abs() < 1e-9, "{slope}: {} {ratio}", found["ratio"]);
         // urad
         assert!(number(&found["error"], "peak_to_peak") < 1e-6, "{slope}: {}", found["error"]);
