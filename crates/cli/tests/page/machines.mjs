@@ -3,18 +3,11 @@
 import assert from "node:assert/strict";
 import { basename } from "node:path";
 import { pathToFileURL } from "node:url";
-import { chromium } from "playwright-core";
+import { started } from "./started.mjs";
 
 const [path, folder] = process.argv.slice(2);
 const name = basename(path, ".html");
-const browser = await chromium.launch({
-    executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
-    args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"],
-});
-const page = await browser.newPage({ viewport: { width: 1000, height: 700 } });
-const errors = [];
-page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-page.on("pageerror", (error) => errors.push(String(error)));
+const { browser, page, errors } = await started({ width: 1000, height: 700 });
 await page.goto(pathToFileURL(path).href);
 await page.waitForSelector("body[data-ready]", { timeout: 60_000 });
 
