@@ -28,6 +28,8 @@ use super::tasks::{self, Tasks};
 
 /// Findings wait until nothing has changed for so long.
 const SILENCE: Duration = Duration::from_millis(80);
+/// What is typed in is compiled once nothing has changed for so long: when the silence is over, its findings are there.
+const HEAD_START: Duration = Duration::from_millis(40);
 /// A picture that follows changes, not only saves, waits for so long.
 const PICTURE_SILENCE: Duration = Duration::from_millis(300);
 /// Bytes of stack of a thread that compiles: as many as the main thread of a program has.
@@ -107,6 +109,9 @@ pub(super) struct Server<W> {
     /// Specs that are to be compiled, and when.
     due: BTreeSet<PathBuf>,
     due_at: Option<Instant>,
+    /// When what is typed in is compiled ahead of its time, and what is being compiled so.
+    ahead_at: Option<Instant>,
+    ahead: Option<PathBuf>,
     /// Those whose time has come; how many are being compiled.
     ready: BTreeSet<PathBuf>,
     compiling: usize,
@@ -141,6 +146,8 @@ impl<W: Write> Server<W> {
             findings: Findings::default(),
             due: BTreeSet::new(),
             due_at: None,
+            ahead_at: None,
+            ahead: None,
             ready: BTreeSet::new(),
             compiling: 0,
             edited: None,
@@ -161,7 +168,8 @@ impl<W: Write> Server<W> {
     pub(super) fn run(&mut self, events: &Receiver<Event>) -> io::Result<bool> {
         loop {
             let now = Instant::now();
-            let next = [self.due_at, self.picture_at.as_ref().map(|(at, _)| *at)].into_iter().flatten().min();
+            let picture_at = self.picture_at.as_ref().map(|(at, _)| *at);
+            let next = [self.due_at, self.ahead_at, picture_at].into_iter().flatten().min();
             let event = match next {
                 Some(at) if at <= now => {
                     self.wake(now);
@@ -200,6 +208,9 @@ impl<W: Write> Server<W> {
             }
             Event::Analysed { spec, version, analysis } => {
                 self.compiling -= 1;
+                // one of an older text has no more to do with what is compiled ahead now
+                let is_now = self.documents.get(&spec).is_some_and(|document| document.version == version);
+                self.ahead.take_if(|ahead| is_now && *ahead == spec);
                 let told = analysis.map_or(Ok(()), |analysis| self.analysed(&spec, version, &analysis));
                 self.compile();
                 told
@@ -434,8 +445,11 @@ impl<W: Write> Server<W> {
     /// A text has changed: what it is part of is compiled anew after a while.
     fn changed(&mut self, file: Option<&Path>, after: Duration) {
         self.analyses.forget(file, self.documents.generation);
+        self.ahead = None;
+        self.ahead_at = None;
         match file {
             Some(file) => {
+                self.ahead_at = (after > HEAD_START).then(|| Instant::now() + HEAD_START);
                 self.due.extend(self.findings.readers(file));
                 self.due.insert(file.to_path_buf());
                 self.edited = Some(file.to_path_buf());
@@ -446,6 +460,13 @@ impl<W: Write> Server<W> {
     }
 
     fn wake(&mut self, now: Instant) {
+        if self.ahead_at.take_if(|at| *at <= now).is_some()
+            && self.compiling == 0
+            && let Some(spec) = self.edited.clone()
+        {
+            self.begin(&spec);
+            self.ahead = Some(spec);
+        }
         if self.due_at.is_some_and(|at| at <= now) {
             self.due_at = None;
             self.ready.append(&mut self.due);
@@ -467,14 +488,21 @@ impl<W: Write> Server<W> {
             let next = edited.or_else(|| is_ready(&self.focused));
             let Some(spec) = next.or_else(|| self.ready.first().cloned()) else { return };
             self.ready.remove(&spec);
-            let Some(version) = self.documents.get(&spec).map(|document| document.version) else { continue };
-            let (snapshot, events) = (self.snapshot(), self.events.clone());
-            self.compiling += 1;
-            self.compilers.spawn(move || {
-                let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
-                let _ = events.send(Event::Analysed { spec, version, analysis: analysed.ok() });
-            });
+            if self.ahead.as_ref() != Some(&spec) {
+                self.begin(&spec);
+            }
         }
+    }
+
+    /// Compiles a spec as it is now on a thread of its own.
+    fn begin(&mut self, spec: &Path) {
+        let Some(version) = self.documents.get(spec).map(|document| document.version) else { return };
+        let (spec, snapshot, events) = (spec.to_path_buf(), self.snapshot(), self.events.clone());
+        self.compiling += 1;
+        self.compilers.spawn(move || {
+            let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
+            let _ = events.send(Event::Analysed { spec, version, analysis: analysed.ok() });
+        });
     }
 
     fn show_picture(&mut self, path: &Path) {
