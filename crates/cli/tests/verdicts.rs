@@ -311,3 +311,50 @@ fn another_branch_of_a_dense_grid_is_told() {
     let told = text(&run.stderr);
     assert!(told.contains("the ranges of face hold another branch that is not among its points"), "{told}");
 }
+
+/// A `keep` reaches over the seam of a full turn: the point a turn on is the same one, and its value stays in its range.
+#[test]
+fn a_keep_goes_on_over_the_seam_of_a_turn() {
+    let folder = folder("seam");
+    let torus = "machine bench { axis X : linear frame bed frame wheel in bed = translate_x(X) }
+        tool torus {
+            surface face(a: angle in -60 deg .. 60 deg, th: angle in -180 deg .. 180 deg) {
+                let out = 20 mm + 5 mm * cos(a)
+                at = [out * cos(th), out * sin(th), 5 mm * sin(a)]
+                body towards [-cos(a) * cos(th), -cos(a) * sin(th), -sin(a)]
+            }
+        }
+        job band {
+            machine m = bench
+            tool t = torus
+            mount t on m.wheel
+            drive m.X = 0 mm
+            surface face in m.bed = move(t.face)
+            sample face { a: -30 deg .. 30 deg by 3, y: -3 mm .. 3 mm by 7, keep th: KEEP }
+        }";
+    let pin = "machine table { axis C : rotary frame bed frame pin in bed = translate_x(30 mm) frame work in bed = rotate_z(C) }
+        tool pin {
+            surface face(a: angle in 90 deg .. 270 deg, v: length in -5 mm .. 5 mm) {
+                at = [5 mm * cos(a), 5 mm * sin(a), v]
+                body inside
+            }
+        }
+        job ring {
+            machine m = table
+            tool t = pin
+            mount t on m.pin
+            motion c : angle in -180 deg .. 180 deg
+            drive m.C = c
+            surface face in m.work = envelope(t.face, over: c)
+            sample face { y: -3 mm .. 3 mm by 7, v: 0 mm, keep c: KEEP }
+        }";
+    for (spec, points) in [(torus, 21), (pin, 7)] {
+        for keep in ["90 deg .. 270 deg", "-270 deg .. -90 deg", "450 deg .. 630 deg"] {
+            let (told, surface) = solved(&folder, &spec.replace("KEEP", keep), 0);
+            assert_eq!(surface["solved"], points, "{keep}: {surface}\n{told}");
+        }
+        // the half that it leaves out
+        let (_, surface) = solved(&folder, &spec.replace("KEEP", "-90 deg .. 90 deg"), 0);
+        assert_eq!(surface["solved"], points, "{surface}");
+    }
+}

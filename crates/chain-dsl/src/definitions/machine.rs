@@ -5,6 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use flank_expr::{Expr, Interval};
 
+use crate::definitions::circles::{Following, report_circles};
 use crate::definitions::closure::{self, Linkage};
 use crate::definitions::instance::{Binder, Overrides, Source};
 use crate::definitions::nc_word;
@@ -324,6 +325,13 @@ impl<'a> Flat<'a> {
         }
         self.requirements.iter().for_each(|required| requirement::check(context, required, &scope, user));
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
+        let following = axes.iter().map(|axis| Following {
+            name: axis.name.node.clone(),
+            variable: axis.variable,
+            law: axis.law.as_ref().and_then(|(law, ..)| *law),
+            place: axis.law.as_ref().map_or(axis.name.span, |(.., place)| *place),
+        });
+        report_circles(context, &following.collect::<Vec<_>>());
         nc_word::settle(context, &self.words, &scope, &mut axes);
         let (frames, lacks_transforms) = self.build_frames(context, machine, &scope);
         let linkages = if lacks_transforms {

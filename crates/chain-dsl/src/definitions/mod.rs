@@ -1,5 +1,6 @@
 //! Machines and tools as they are defined, and instances of them with their parameters' values.
 
+pub(crate) mod circles;
 pub(crate) mod closure;
 pub(crate) mod implicit_surface;
 pub(crate) mod index;

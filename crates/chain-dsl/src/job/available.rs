@@ -1,5 +1,6 @@
 //! What a surface may be made from: surfaces of tools and earlier surfaces of the job, whole or piece by piece.
 
+use crate::definitions::tool::BuiltTool;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
@@ -49,6 +50,10 @@ impl<'g> Builder<'_, 'g> {
     /// The pieces of a surface of a tool, or of an earlier surface of the job.
     pub(super) fn available(&mut self, context: &mut Context<'g>, path: &ast::Path) -> Option<Vec<Available<'g>>> {
         let owner = &path.segments[0];
+        if self.unmade.contains(&owner.node) {
+            self.not_made_yet(context, owner);
+            return None;
+        }
         if self.surfaces.iter().any(|(surface, _)| is_of(&surface.name, &owner.node)) {
             return self.earlier(context, path);
         }
@@ -73,6 +78,21 @@ impl<'g> Builder<'_, 'g> {
             _ => {}
         }
         None
+    }
+
+    /// Reports a surface that is made by this very statement or by a later one.
+    fn not_made_yet(&self, context: &mut Context<'g>, name: &Name) {
+        let message = format!("`{}` is not made yet", name.node);
+        let has_one = |(_, _, tool): &&(Name, String, BuiltTool<'g>)| {
+            tool.surfaces.iter().any(|surface| surface.name == name.node)
+        };
+        let help = match self.tools.iter().find(has_one) {
+            Some((tool, ..)) => format!("that of the tool is `{}.{}`", tool.node, name.node),
+            None => "a surface is made from one of a tool, or from one that is made further up".to_string(),
+        };
+        let first = self.names.get(&name.node).copied().unwrap_or(name.span);
+        let diagnostic = Diagnostic::new(Code::UnknownName, name.span, message).help(help);
+        context.report(diagnostic.note(first, "it is made here"));
     }
 
     /// A surface that the job made before, with all its pieces or one of them.

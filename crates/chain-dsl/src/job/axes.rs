@@ -2,6 +2,7 @@
 
 use flank_expr::{Expr, Interval};
 
+use crate::definitions::circles::{Following, report_circles};
 use crate::definitions::machine::LawKind;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
@@ -10,6 +11,7 @@ use crate::model::{Axis, LawSource, Machine};
 use crate::syntax::ast::{self, ExpressionKind};
 use crate::values::context::{Context, quoted};
 use crate::values::dimension::Dimension;
+use crate::values::value::Constant;
 
 use super::{Builder, are_even};
 
@@ -141,41 +143,29 @@ impl<'g> Builder<'_, 'g> {
         }
         self.report_circles(context, &machines);
         self.write_laws_in_motions(context, &mut machines);
+        self.check_laws(context, &machines);
         self.close_loops(context, &mut machines);
         machines
     }
 
-    /// Axes whose laws lead back to themselves; each circle once, at the law of its first axis.
+    /// Laws of the job's axes that lead back to where they begin.
     fn report_circles(&self, context: &mut Context<'g>, machines: &[Machine<'g>]) {
-        let axes: Vec<(usize, &Axis<'g>)> = machines
-            .iter()
-            .enumerate()
-            .flat_map(|(index, machine)| machine.axes.iter().map(move |axis| (index, axis)))
-            .collect();
-        let followed = |axis: &Axis<'g>| -> Vec<usize> {
-            let inside = context.graph.variables_of(&[axis.law]);
-            let is_inside = |other: &Axis<'g>| other.variable.as_variable().is_some_and(|own| inside.contains(&own));
-            (0..axes.len()).filter(|&k| axis.law != axis.variable && is_inside(axes[k].1)).collect()
-        };
-        let leads_to: Vec<Vec<usize>> = axes.iter().map(|(_, axis)| followed(axis)).collect();
-        let mut told = vec![false; axes.len()];
-        for start in 0..axes.len() {
-            let Some(circle) = circle_through(start, &leads_to) else { continue };
-            if circle.iter().any(|&k| std::mem::replace(&mut told[k], true)) {
-                continue;
-            }
-            let name = |&k: &usize| format!("`{}.{}`", machines[axes[k].0].name, axes[k].1.name);
-            let names: Vec<String> = circle.iter().chain([&start]).map(name).collect();
-            let (message, help) = match circle.len() {
-                1 => (format!("axis {} follows itself", names[0]), "let it follow a motion, or stand still"),
-                _ => {
-                    let message = format!("axes follow each other in a circle: {}", names.join(" → "));
-                    (message, "one of them must follow a motion, or stand still")
-                }
-            };
-            let place = self.place_of_law(axes[start].0, &axes[start].1.name);
-            context.report(Diagnostic::new(Code::CyclicCouple, place, message).help(help));
-        }
+        let each = machines.iter().enumerate().flat_map(|(index, machine)| {
+            machine.axes.iter().map(move |axis| Following {
+                name: format!("{}.{}", machine.name, axis.name),
+                variable: axis.variable,
+                law: self.written_law(index, &axis.name),
+                place: self.place_of_law(index, &axis.name),
+            })
+        });
+        report_circles(context, &each.collect::<Vec<_>>());
+    }
+
+    /// The law that was written for an axis.
+    fn written_law(&self, machine: usize, axis: &str) -> Option<Expr<'g>> {
+        let built = self.machines[machine].2.axes.iter().find(|built| built.name.node == axis);
+        let own = built.and_then(|built| built.law.as_ref()).and_then(|(law, ..)| *law);
+        own.or_else(|| self.drives.get(&(machine, axis.to_string())).and_then(|(law, _)| *law))
     }
 
     /// Where an axis gets its law; the machine's name if nowhere.
@@ -227,23 +217,22 @@ impl<'g> Builder<'_, 'g> {
     }
 }
 
-/// The shortest way from a node back to itself, beginning with it.
-fn circle_through(start: usize, leads_to: &[Vec<usize>]) -> Option<Vec<usize>> {
-    let mut before: Vec<Option<usize>> = vec![None; leads_to.len()];
-    let mut queue = std::collections::VecDeque::from([start]);
-    while let Some(at) = queue.pop_front() {
-        for &next in &leads_to[at] {
-            if next == start {
-                let back = std::iter::successors(Some(at), |&k| if k == start { None } else { before[k] });
-                let mut circle: Vec<usize> = back.collect();
-                circle.reverse();
-                return Some(circle);
-            }
-            if before[next].is_none() {
-                before[next] = Some(at);
-                queue.push_back(next);
+impl<'g> Builder<'_, 'g> {
+    /// Reports laws that have no value, wherever the motions are in their ranges.
+    fn check_laws(&mut self, context: &mut Context<'g>, machines: &[Machine<'g>]) {
+        for (index, machine) in machines.iter().enumerate() {
+            for axis in machine.axes.iter().filter(|axis| axis.law != axis.variable) {
+                let value = match context.constant_kept(axis.law) {
+                    Constant::Known(value) => value,
+                    Constant::Moves(_) if context.enclosure(axis.law).is_ok_and(Interval::is_empty) => f64::NAN,
+                    Constant::Moves(_) | Constant::Unknown => continue,
+                };
+                if !value.is_finite() {
+                    let what = format!("the law of `{}.{}`", machine.name, axis.name);
+                    context.not_finite(value, self.place_of_law(index, &axis.name), &what);
+                    self.unsettled.insert(index);
+                }
             }
         }
     }
-    None
 }

@@ -90,6 +90,8 @@ struct Builder<'a, 'g> {
     /// Machines with an axis that has no law, or a frame without a transform of its own (which has been reported).
     unsettled: HashSet<usize>,
     surfaces: Vec<(GeneratedSurface<'g>, FrameRef)>,
+    /// The names of those whose statements are still to come.
+    unmade: HashSet<String>,
     /// Samples with a name of their own, with the surface that each is of.
     named_samples: Vec<(Name, usize, Sample<'g>)>,
     /// What the surfaces of the job are made from and over: `c.outside.blade`, `roll`.
@@ -127,6 +129,7 @@ impl<'a, 'g> Builder<'a, 'g> {
             laws: Vec::new(),
             unsettled: HashSet::new(),
             surfaces: Vec::new(),
+            unmade: HashSet::new(),
             named_samples: Vec::new(),
             named: Vec::new(),
             user: None,
@@ -243,9 +246,13 @@ fn with_points<'g>(
         }
     }
     let machines = builder.settle_axes(context);
+    builder.unmade = declared(job).map(str::to_string).collect();
     for statement in &job.statements {
         if let JobStatement::Surface(surface) = statement {
             builder.surface(context, surface);
+            surface.names.iter().for_each(|name| {
+                builder.unmade.remove(&name.node);
+            });
         }
     }
     for statement in &job.statements {
@@ -525,13 +532,16 @@ impl<'g> Builder<'_, 'g> {
             let help = match path.segments.as_slice() {
                 [machine, member, ..] => format!("write `{}.{}`", machine.node, member.node),
                 [own] if names.contains(&own.node) => format!("write `{}.` and the name of {what}", own.node),
+                [own] if self.names.contains_key(&own.node) => {
+                    format!("write `{}.` and the name of {what}", names.first().map_or("m", String::as_str))
+                }
                 [own] => format!("write `{}.{}`", names.first().map_or("m", String::as_str), own.node),
                 [] => "write `m.name`".to_owned(),
             };
             let diagnostic = Diagnostic::new(Code::WrongKind, path.span, message);
             context.report(match path.segments.as_slice() {
                 [machine, member, _, ..] => diagnostic.writing(path.span, &format!("{}.{}", machine.node, member.node)),
-                [own] if !names.contains(&own.node) && !names.is_empty() => {
+                [own] if !self.names.contains_key(&own.node) && !names.is_empty() => {
                     diagnostic.writing(path.span, &format!("{}.{}", names[0], own.node))
                 }
                 _ => diagnostic.help(help),

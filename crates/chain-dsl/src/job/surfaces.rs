@@ -133,6 +133,14 @@ impl<'g> Builder<'_, 'g> {
         for argument in &call.arguments {
             match (&argument.name, &argument.value.kind) {
                 (_, ExpressionKind::Error) => return None,
+                (None, ExpressionKind::Path(path)) if self.is_motion(path) => {
+                    let named = format!("over: {}", path.joined());
+                    let message = format!("`{}` is a motion, which a surface is made over", path.joined());
+                    let wrong = Diagnostic::new(Code::WrongArguments, path.span, message);
+                    let wrong = wrong.help(format!("say `{named}`"));
+                    context.report(wrong.cure(format!("write `{named}`"), path.span, named));
+                    return None;
+                }
                 (None, ExpressionKind::Path(path)) => tools.push(path),
                 (Some(name), _) if name.node == "over" => {
                     let each: Vec<&Expression> = match &argument.value.kind {
@@ -160,6 +168,10 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         Some((tools, motions))
+    }
+
+    fn is_motion(&self, path: &ast::Path) -> bool {
+        matches!(path.segments.as_slice(), [name] if self.motions.iter().any(|motion| motion.name == name.node))
     }
 
     fn motion(&self, context: &mut Context<'g>, written: &Expression) -> Option<RangedVariable<'g>> {

@@ -53,8 +53,15 @@ impl<'s> Mistake<'s> {
     }
 
     pub(super) fn explain(&self) -> Diagnostic {
-        let special =
-            [Self::text, Self::by_of_one_value, Self::not_a_unit, Self::not_a_name, Self::habit, Self::stray_bracket];
+        let special = [
+            Self::text,
+            Self::by_of_one_value,
+            Self::not_a_unit,
+            Self::not_a_name,
+            Self::habit,
+            Self::stray_bracket,
+            Self::frame_in_its_place,
+        ];
         special.iter().find_map(|explain| explain(self)).unwrap_or_else(|| self.unexpected())
     }
 
@@ -110,6 +117,25 @@ impl<'s> Mistake<'s> {
             let end = Span { start: self.place().start + text.len() as u32, ..self.place() };
             let help = "write `\"` at its end, on the same line";
             self.here("the text is not closed").help(help).cure("write `\"` at its end", end, "\"")
+        })
+    }
+
+    /// `frame work in table`
+    fn frame_in_its_place(&self) -> Option<Diagnostic> {
+        let word = |k: usize| self.scan.say(self.range.start + k);
+        let is_bare = self.ends() && self.range.len() == 4 && word(0) == "frame" && word(2) == "in";
+        let written = " = translate_z(0 mm)";
+        is_bare.then(|| {
+            let help = format!(
+                "say how it stands in `{}`, as `= rotate_z(10 deg)`; `{}` where it stands alike",
+                word(3),
+                written.trim()
+            );
+            self.unexpected().help(help).cure(
+                format!("write `{}`", written.trim()),
+                self.behind(self.found - 1),
+                written,
+            )
         })
     }
 

@@ -367,15 +367,7 @@ impl<'g> Context<'g> {
         match self.constant(expr) {
             Constant::Known(value) if value.is_finite() => Some(value),
             Constant::Known(value) => {
-                let (reason, help) = if value.is_nan() {
-                    (
-                        "cannot be computed",
-                        "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0",
-                    )
-                } else {
-                    ("is infinite", "look for a division by zero, or a value that grows too large")
-                };
-                self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
+                self.not_finite(value, span, what);
                 None
             }
             Constant::Unknown => None,
@@ -385,6 +377,16 @@ impl<'g> Context<'g> {
                 None
             }
         }
+    }
+
+    /// Reports a value that is no number, or infinite.
+    pub(crate) fn not_finite(&mut self, value: f64, span: Span, what: &str) {
+        let (reason, help) = if value.is_nan() {
+            ("cannot be computed", "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0")
+        } else {
+            ("is infinite", "look for a division by zero, or a value that grows too large")
+        };
+        self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
     }
 
     /// A scalar of the wanted dimension, or `None` with the reason reported.

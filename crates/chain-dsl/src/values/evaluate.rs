@@ -23,7 +23,7 @@ impl<'g> Context<'g> {
             return Value::Poison;
         }
         let value = match &expression.kind {
-            ExpressionKind::Number(value, units) => self.number(*value, units),
+            ExpressionKind::Number(value, units) => self.number(*value, units, expression.span),
             ExpressionKind::Text(_) => Value::Text,
             ExpressionKind::Path(path) => self.path(path, scope),
             ExpressionKind::Call(call) => self.call(call, scope),
@@ -153,7 +153,7 @@ impl<'g> Context<'g> {
         Some(product)
     }
 
-    fn number(&mut self, value: f64, units: &[(crate::diagnostics::source::Name, i32)]) -> Value<'g> {
+    fn number(&mut self, value: f64, units: &[(crate::diagnostics::source::Name, i32)], span: Span) -> Value<'g> {
         let (mut number, mut product) = (value, Dimension::NUMBER);
         for (name, exponent) in units {
             let Some((_, base)) = dimension::unit_size(&name.node) else {
@@ -162,6 +162,10 @@ impl<'g> Context<'g> {
             };
             number = dimension::convert(number, &name.node, *exponent).unwrap_or(f64::NAN);
             product = product.times(base.power(*exponent));
+        }
+        if !number.is_finite() {
+            self.not_finite(number, span, "this number");
+            return Value::Poison;
         }
         Value::Scalar(self.graph.constant(number), product)
     }

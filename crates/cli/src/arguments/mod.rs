@@ -205,7 +205,8 @@ pub(crate) struct EvaluatorArguments {
     #[arg(long, value_name = "N", value_parser = threads)]
     threads: Option<NonZero<usize>>,
 
-    /// Boxes that a search for all branches examines before it reports the rest of the ranges as undecided
+    /// Boxes that a search for all branches at one place examines before it reports the rest of the ranges as undecided; those at all
+    /// places of a grid examine ten times as many
     #[arg(long, value_name = "N", default_value_t = EvaluatorOptions::default().boxes, value_parser = clap::value_parser!(u64).range(1..=MOST_ASKED_FOR))]
     boxes: u64,
 }

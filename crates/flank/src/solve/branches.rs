@@ -55,9 +55,13 @@ fn listed_with(
         let keep = keeps.get(number).map_or_else(String::new, |keep| format!(": `{}`", keep.text()));
         format!("{}: {}{}, at [{x}, {y}, {z}] mm{keep}", number + 1, place(number), values.join(", "))
     });
+    let choice = match keeps {
+        [] => "No `keep` of an unknown tells them apart: narrow the ranges".to_string(),
+        _ => format!("Put its `keep` into `sample {name}`, or narrow the ranges"),
+    };
     let way_out = format!(
-        "which one is meant? Put its `keep` into `sample {name}`, or narrow the ranges. All are of the same tool: where it leaves \
-         parts of several on the work, as with run-out, make a surface of each and `trim` them by each other"
+        "which one is meant? {choice}. All are of the same tool: where it leaves parts of several on the work, as with run-out, make a \
+         surface of each and `trim` them by each other"
     );
     let message = format!("ambiguous: the ranges of {name} hold {} branches at {at}", branches.len());
     NotDone::new(NotDoneKind::Ambiguous, name, message).with(each.chain([way_out]).collect())

@@ -1,5 +1,7 @@
 //! Which `keep` in a sample would select one of several branches.
 
+use std::f64::consts::TAU;
+
 use flank_chain_dsl::{Dimension, RangedVariable};
 use flank_solver::SurfacePoint;
 
@@ -28,6 +30,8 @@ struct Function {
     /// What it may be in the ranges of the unknowns.
     low: f64,
     high: f64,
+    /// Whether this is a whole turn, behind whose end its beginning may come again.
+    is_turn: bool,
 }
 
 impl Keep {
@@ -65,8 +69,9 @@ impl Function {
     fn around(&self, branches: &[Vec<Vec<f64>>], number: usize) -> Keep {
         let (own_low, own_high) = self.span(&branches[number]);
         let others = branches.iter().enumerate().filter(|(k, _)| *k != number).map(|(_, points)| self.span(points));
-        let below = others.clone().map(|span| span.1).filter(|x| *x < own_low).reduce(f64::max);
-        let above = others.map(|span| span.0).filter(|x| *x > own_high).reduce(f64::min);
+        let turn = |by: f64| others.clone().map(move |(low, high)| (low + by, high + by)).filter(|_| self.is_turn);
+        let below = others.clone().chain(turn(-TAU)).map(|span| span.1).filter(|x| *x < own_low).reduce(f64::max);
+        let above = others.clone().chain(turn(TAU)).map(|span| span.0).filter(|x| *x > own_high).reduce(f64::min);
         let low = below.map_or(self.low, |x| 0.5 * (x + own_low));
         let high = above.map_or(self.high, |x| 0.5 * (x + own_high));
         Keep { of: self.of.clone(), dimension: self.dimension, low, high }
@@ -78,7 +83,8 @@ fn functions(unknowns: &[RangedVariable<'_>]) -> Vec<Function> {
     let single = |k: usize| {
         let of = &unknowns[k];
         let weights = (0..unknowns.len()).map(|other| f64::from(u8::from(other == k))).collect();
-        Function { of: of.name.clone(), dimension: of.dimension, weights, low: of.low, high: of.high }
+        let is_turn = units::is_angle(of.dimension) && (of.high - of.low - TAU).abs() < APART;
+        Function { of: of.name.clone(), dimension: of.dimension, weights, low: of.low, high: of.high, is_turn }
     };
     let both = |a: usize, b: usize, sign: f64| {
         let (one, other) = (single(a), single(b));
@@ -90,6 +96,7 @@ fn functions(unknowns: &[RangedVariable<'_>]) -> Vec<Function> {
             weights: one.weights.iter().zip(&other.weights).map(|(a, b)| a + sign * b).collect(),
             low: one.low + ends[0],
             high: one.high + ends[1],
+            is_turn: false,
         }
     };
     let angles: Vec<usize> = (0..unknowns.len()).filter(|k| units::is_angle(unknowns[*k].dimension)).collect();

@@ -42,7 +42,7 @@ pub(crate) struct Choice<'c> {
 impl Choice<'_> {
     /// Whether a branch with these unknowns in the middle qualifies.
     pub(crate) fn keeps(&self, unknowns: &[f64]) -> bool {
-        self.keep.as_ref().is_none_or(|keep| keep.broken(unknowns).is_none())
+        self.keep.as_ref().is_none_or(|keep| keep.holds(unknowns, self.periodic))
     }
 
     /// Whether a root is a point of a surface at all.

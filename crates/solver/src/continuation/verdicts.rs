@@ -21,6 +21,9 @@ const FEW: usize = 512;
 /// Points of the largest grid all of which are looked at where some are missing: a sheet may end at a branch that crosses it.
 const MOST_LOOKED_AT: usize = 4096;
 
+/// Turns of a periodic unknown after which conditions are looked at, the nearest first.
+const TURNS: [f64; 4] = [1.0, -1.0, 2.0, -2.0];
+
 /// What a branch must be like.
 pub(crate) struct Keep<'c> {
     /// Functions of the unknowns.
@@ -40,18 +43,31 @@ impl Keep<'_> {
         values.iter().zip(self.between).position(|(value, range)| !(range.low <= *value && *value <= range.high))
     }
 
-    /// The same point where all conditions hold, perhaps a turn of one of its periodic unknowns further on.
-    fn turned(&self, unknowns: &[f64], ranges: &[Range], periodic: &[bool]) -> Result<Vec<f64>, usize> {
-        let Some(condition) = self.broken(unknowns) else { return Ok(unknowns.to_vec()) };
+    /// The same unknowns, perhaps some turns of a periodic one further on, where all conditions hold; a condition that does not, where they
+    /// hold after none of these turns.
+    fn met(&self, unknowns: &[f64], periodic: &[bool]) -> Result<Vec<Vec<f64>>, usize> {
+        let Some(condition) = self.broken(unknowns) else { return Ok(vec![unknowns.to_vec()]) };
         let turning = (0..periodic.len()).filter(|k| periodic[*k]);
-        let others = turning.flat_map(|k| [TAU, -TAU].map(|turn| (k, turn))).map(|(k, turn)| {
+        let others = turning.flat_map(|k| TURNS.map(|turns| (k, turns))).map(|(k, turns)| {
             let mut other = unknowns.to_vec();
-            other[k] += turn;
+            other[k] += turns * TAU;
             other
         });
-        let is_within = |other: &[f64]| other.iter().zip(ranges).all(|(x, range)| range.excess(*x) == 0.0);
-        let mut kept = others.filter(|other| is_within(other) && self.broken(other).is_none());
-        kept.next().ok_or(condition)
+        let met: Vec<Vec<f64>> = others.filter(|other| self.broken(other).is_none()).collect();
+        if met.is_empty() { Err(condition) } else { Ok(met) }
+    }
+
+    /// Whether all conditions hold, perhaps some turns of what is periodic further on.
+    pub(crate) fn holds(&self, unknowns: &[f64], periodic: &[bool]) -> bool {
+        self.met(unknowns, periodic).is_ok()
+    }
+
+    /// The same point in the turn in which all conditions hold. Its values stay within its ranges: where that turn lies beyond them, they
+    /// are those that it has.
+    fn turned(&self, unknowns: &[f64], ranges: &[Range], periodic: &[bool]) -> Result<Vec<f64>, usize> {
+        let is_within = |other: &Vec<f64>| other.iter().zip(ranges).all(|(x, range)| range.excess(*x) == 0.0);
+        let met = self.met(unknowns, periodic)?;
+        Ok(met.into_iter().find(is_within).unwrap_or_else(|| unknowns.to_vec()))
     }
 
     /// Those of some points of a field at which a condition does not hold.
