@@ -18,6 +18,8 @@ const POSITIONS: usize = 14;
 const LEAST_POSITIONS: usize = 3;
 /// Surfaces at most at which the tool is drawn: in each position all tools are cut, which for each surface would grow with their square.
 const MOST_TOUCHED: usize = 14;
+/// Below this sine, ten degrees, flanks are too steep to tell tip from root by the side to which they lean.
+const STEEP: f64 = 0.17;
 /// Points of a surface in the section.
 const POINTS: usize = 61;
 
@@ -88,12 +90,24 @@ impl Cut {
             solved.filter(|other| dot(length, [0, 1, 2].map(|k| other.position[k] - point.position[k])).abs() < 1.0);
         let sum = near.fold([0.0; 2], |sum, other| [sum[0] + other.position[0], sum[1] + other.position[1]]);
         let outward = unit([sum[0], sum[1], 0.0]).unwrap_or([1.0, 0.0, 0.0]);
-        // in the axial plane from root to tip: the side to which the flank leans
+        // in the axial plane from root to tip: the side to which what the tool leaves leans, and where that is steep, away from the axis
         let rise = [0, 1, 2].map(|k| dot(profile, outward) * outward[k] + [0.0, 0.0, profile[2]][k]);
         let in_plane = [0, 1, 2].map(|k| rise[k] - dot(rise, length) * length[k]);
         let up = unit(in_plane).ok_or_else(no_direction)?;
-        let up = if dot(up, point.normal) < 0.0 { up.map(|x| -x) } else { up };
+        let lean = Self::lean(subject, point.position, up);
+        let way = if lean.abs() < STEEP { dot(up, outward) } else { lean };
+        let up = if way < 0.0 { up.map(|x| -x) } else { up };
         Ok(Cut(SectionPlane { point: point.position, normal: length, axes: [cross(up, length), up] }))
+    }
+
+    /// How far the normals of all that the tool leaves point in a direction, each where it is nearest to a place.
+    fn lean(subject: &Subject<'_, '_>, place: [f64; 3], direction: [f64; 3]) -> f64 {
+        let off = |point: &SurfacePoint| (0..3).map(|k| (point.position[k] - place[k]).powi(2)).sum::<f64>();
+        let nearest = |at: usize| {
+            let solved = subject.solved[at].points.iter().filter(|point| point.outcome == Outcome::Solved);
+            solved.min_by(|a, b| off(a).total_cmp(&off(b)))
+        };
+        subject.mates().into_iter().filter_map(nearest).map(|point| dot(direction, point.normal)).sum()
     }
 
     fn note(&self, subject: &Subject<'_, '_>) -> String {

@@ -33,11 +33,15 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     let blanks = summary.beyond_blank.iter().map(|(segment, count)| (CutBy::Blank(*segment), *count));
     let own = [(CutBy::ItsTool, summary.cut_by_tool)].into_iter();
     for (cutter, count) in own.chain(elsewhere).chain(trims).chain(blanks) {
-        let is_whole = cutter == CutBy::ItsTool && count == summary.asked;
-        let side = if is_whole && is_inside_out(job, solved) {
-            "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
-        } else {
-            ""
+        let is_whole = count == summary.asked;
+        let side = match cutter {
+            CutBy::ItsTool if is_whole && is_inside_out(job, solved) => {
+                "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
+            }
+            CutBy::ItsToolElsewhere(_) if is_whole => {
+                "; nothing of the surface stays: surfaces of the tool may cross within their ranges, and what lies beyond the crossing cuts"
+            }
+            _ => "",
         };
         let depth = match cutter {
             CutBy::ItsToolElsewhere(by) => secondary::depth(&solved.positions, by),
