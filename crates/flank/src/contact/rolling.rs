@@ -67,7 +67,9 @@ impl Rolling {
         let problem = ContactProblem::new(pair).expect("a job without errors leaves nothing unbound");
         let roll = &members.contact.roll;
         let limits = [roll.low, roll.high];
-        let first = found(&problem, limits, members.points.each_ref().map(Vec::as_slice))?;
+        let points = members.points.each_ref().map(Vec::as_slice);
+        let first = found(&problem, limits, points)?;
+        let problem = problem.watching(pair, points).expect("a job without errors leaves nothing unbound");
         Ok(Rolling::from_first(problem, first, (steps, every), limits))
     }
 
