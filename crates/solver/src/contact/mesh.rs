@@ -49,15 +49,7 @@ pub struct Carried {
 impl ContactProblem {
     /// The pair that touches at a contact, followed by even steps of the roll until it no longer touches, or to the ends of the roll.
     pub fn engagement(&self, from: &ContactPoint, pitch: f64, steps: usize, limits: [f64; 2]) -> Engagement {
-        let step = pitch / steps as f64;
-        let to = |way: isize| {
-            let mut track = Track::new(self, from, (step, limits));
-            track.follow(0, from, way);
-            track.watch(steps, way);
-            track
-        };
-        let (before, after) = rayon::join(|| to(-1), || to(1));
-        let track = before.joined(after);
+        let track = Track::new(self, from, (pitch, steps, limits)).watched();
         let missed = track.missed();
         let (first, points) = track.contiguous();
         let last = first + points.len() as isize - 1;
@@ -75,7 +67,18 @@ impl ContactProblem {
             Some(ContactState::Line) => self.end_of_lines(inner, inner.roll + step),
             _ => self.end_at_edge(inner, inner.roll + step),
         };
-        at_edge.or_else(|| self.end_by_halving(inner, step, SETTLED * of.pitch))
+        // an edge may open the pair more before
+        let outer = match way {
+            -1 => of.points.iter().rev().find(|point| point.roll < inner.roll),
+            _ => of.points.iter().find(|point| point.roll > inner.roll),
+        };
+        let is_open = |end: &ContactPoint| outer.is_none_or(|outer| !self.is_overtaken(end, outer));
+        at_edge.filter(is_open).or_else(|| self.end_by_halving(inner, outer, step, SETTLED * of.pitch))
+    }
+
+    /// Whether another contact of the same teeth, followed to the roll position of one, opens the pair more.
+    fn is_overtaken(&self, point: &ContactPoint, by: &ContactPoint) -> bool {
+        self.followed(by, point.roll).is_some_and(|other| other.is_beyond(point.height()))
     }
 
     /// Where the line along which the flanks touch leaves them at a corner, between a point inside and a roll position at which the corner
@@ -152,8 +155,18 @@ impl ContactProblem {
         None
     }
 
-    /// The last point of contact of the flanks within a step of the roll, found by halving.
-    fn end_by_halving(&self, inner: &ContactPoint, step: f64, settled: f64) -> Option<ContactPoint> {
+    /// The last point of contact of the flanks within a step of the roll, beyond which an outer contact opens the pair more or there is none:
+    /// found by halving.
+    fn end_by_halving(
+        &self,
+        inner: &ContactPoint,
+        outer: Option<&ContactPoint>,
+        step: f64,
+        settled: f64,
+    ) -> Option<ContactPoint> {
+        let is_open = |point: &ContactPoint| {
+            point.is_of_flanks() && outer.is_none_or(|outer| !self.is_overtaken(point, outer))
+        };
         let (mut low, mut high) = (0.0, 1.0);
         let mut best = inner.clone();
         for _ in 0..MOST_STEPS {
@@ -161,7 +174,7 @@ impl ContactProblem {
             if (high - low) * step.abs() <= settled {
                 break;
             }
-            match self.followed(&best, inner.roll + share * step).filter(ContactPoint::is_of_flanks) {
+            match self.followed(&best, inner.roll + share * step).filter(is_open) {
                 Some(point) => (best, low) = (point, share),
                 None => high = share,
             }

@@ -276,24 +276,18 @@ impl<'w> Watching<'w> {
         all
     }
 
-    /// Places that open the pair more than a contact does, or than none, the highest first.
-    pub(super) fn beyond(&self, passed: &[Option<Passed>], present: Option<&ContactPoint>) -> Vec<usize> {
-        let over = |at: &usize| {
-            let passed = passed[*at].as_ref().filter(|passed| passed.is_held)?;
-            let present = present.map_or(f64::NEG_INFINITY, ContactPoint::height);
-            Some((passed.height - present) * passed.opening).filter(|over| *over > HIGHER)
-        };
-        let mut found: Vec<(usize, f64)> = (0..passed.len()).filter_map(|at| {
-            over(&at)?;
-            Some((at, passed[at].as_ref()?.height))
-        }).collect();
-        found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    /// Places that both teeth have and that open the pair more than something of a height, the highest first.
+    pub(super) fn beyond(&self, passed: &[Option<Passed>], height: f64) -> Vec<usize> {
+        let held = passed.iter().enumerate().filter_map(|(at, place)| Some((at, place.as_ref()?)));
+        let is_beyond = |(_, place): &(usize, &Passed)| place.is_held && (place.height - height) * place.opening > HIGHER;
+        let mut found: Vec<(usize, &Passed)> = held.filter(is_beyond).collect();
+        found.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
         found.into_iter().map(|(at, _)| at).collect()
     }
 
-    /// Places at edges, away from a contact, beside which the pair may be opened more than the contact does: those that do so more than their
-    /// neighbours, and as far below the contact as these are below them.
-    pub(super) fn beside(&self, passed: &[Option<Passed>], present: &ContactPoint) -> Vec<usize> {
+    /// Places at edges, away from a contact, beside which the pair may be opened more than what carries does: those that do so more than their
+    /// neighbours, and come near to it.
+    pub(super) fn beside(&self, passed: &[Option<Passed>], present: &ContactPoint, carrying: f64) -> Vec<usize> {
         let held = |at: usize| passed.get(at)?.as_ref().filter(|passed| passed.is_held);
         let is_on_edge = |at: usize| self.places.get(at).is_some_and(|(_, place)| !place.edges.is_empty());
         if present.state == Some(ContactState::Line) {
@@ -304,11 +298,17 @@ impl<'w> Watching<'w> {
             let neighbours = [at.wrapping_sub(1), at + 1].into_iter().filter(|k| is_on_edge(*k) && self.places[*k].0 == self.places[*at].0);
             let neighbours: Vec<(usize, &Passed)> = neighbours.filter_map(|k| Some((k, passed[k].as_ref()?))).collect();
             let is_highest = neighbours.iter().all(|(k, of)| held(*k).is_none() || of.height <= own.height);
-            let rise = neighbours.iter().map(|(_, of)| (of.height - own.height).abs()).fold(0.0, f64::max);
+            // between places of an edge that both teeth have the parabola through three of them is no more than a quarter of that higher; where one
+            // of them is beyond the mate the highest point is at its end, up to there
+            let rise = |(k, of): &(usize, &Passed)| match held(*k) {
+                Some(_) => 0.25 * (own.height - of.height),
+                None => of.height - own.height,
+            };
+            let rise = neighbours.iter().map(rise).fold(0.0, f64::max);
             let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|x| (a[x] - b[x]).powi(2)).sum::<f64>().sqrt();
             let spacing = neighbours.iter().map(|(_, of)| apart(of.position, own.position)).fold(0.0, f64::max);
             let off = apart(present.in_members[self.places[*at].0], own.position);
-            is_highest && own.height + rise > present.height() && off > BESIDE * spacing
+            is_highest && own.height + rise > carrying && off > BESIDE * spacing
         };
         (0..passed.len()).filter(is_candidate).collect()
     }
@@ -333,19 +333,25 @@ impl ContactProblem {
         Ok(ContactProblem { watch, ..self })
     }
 
-    /// The contact beside a place, if it opens the pair more than the place does and than what is known: looked for with the edges on which
-    /// the place lies, then with none, then with each that there is.
-    pub(super) fn from_place(&self, start: &Passed, edges: &[FlankEdge], roll: f64, present: f64) -> Option<ContactPoint> {
-        let least = start.height.max(present) - HIGHER / start.opening;
-        let members = self.members(&start.unknowns, roll);
-        let normal: Vector3<f64> = members[0].normal;
+    /// The contact beside a place, if it opens the pair as much as the place does and as what is known: looked for with the edges on which
+    /// the place lies and with none; then, where it is vital, with each that there is.
+    pub(super) fn from_place(
+        &self,
+        start: &Passed,
+        (edges, is_vital): (&[FlankEdge], bool),
+        roll: f64,
+        known: f64,
+    ) -> Option<ContactPoint> {
+        let least = start.height.max(known) - HIGHER / start.opening;
+        let normal: Vector3<f64> = self.members(&start.unknowns, roll)[0].normal;
         let single = edges.iter().map(|edge| vec![*edge]);
-        let ways = single.chain([edges.to_vec(), Vec::new()]).chain(self.ways());
-        let found = ways.filter_map(|edges| self.touching_near(roll, &start.unknowns, &edges, normal));
-        let is_one = |point: &ContactPoint| {
+        let own = single.chain([edges.to_vec()]).chain((!edges.is_empty()).then(Vec::new));
+        let others = if is_vital { self.ways() } else { Vec::new() };
+        let mut found =
+            own.chain(others).filter_map(|edges| self.touching_near(roll, &start.unknowns, &edges, normal));
+        found.find(|point| {
             point.outcome == Outcome::Solved && point.state != Some(ContactState::Crossing) && point.height() >= least
-        };
-        found.filter(is_one).next()
+        })
     }
 }
 
