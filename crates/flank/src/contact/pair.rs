@@ -221,9 +221,11 @@ impl<'j, 'g> Members<'j, 'g> {
     pub(crate) fn turns(&self, job: &Job<'g>, share: f64) -> [[f64; 2]; 2] {
         let Contact { roll, lag, errors, .. } = self.contact;
         let pair = self.pair(job, &vec![0.0; errors.len()], &[]);
-        let of = |variable: Expr<'g>| pair.placements.each_ref().map(|placement| placement.twist(variable).angular.0[2]);
+        let of =
+            |variable: Expr<'g>| pair.placements.each_ref().map(|placement| placement.twist(variable).angular.0[2]);
         let all = [of(roll.variable), of(lag.variable)].concat();
-        let tape = Tape::new(&all, &[roll.variable, lag.variable]).expect("a job without errors leaves nothing unbound");
+        let tape =
+            Tape::new(&all, &[roll.variable, lag.variable]).expect("a job without errors leaves nothing unbound");
         let mut out = [0.0; 4];
         let at = [roll.low + share * (roll.high - roll.low), 0.5 * (lag.low + lag.high)];
         ScalarEvaluator::new(&tape).run(&at, &mut out);

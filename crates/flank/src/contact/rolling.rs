@@ -269,9 +269,10 @@ fn among(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
         is_clear(before) && is_clear(after) && slope(before).signum() != slope(after).signum()
     };
     let between = of.points.windows(2).filter(|pair| turns(&pair[0], &pair[1]));
-    let at = of.points.windows(3).filter(|three| {
-        three[1].is_of_flanks() && !is_clear(&three[1]) && turns(&three[0], &three[2])
-    });
+    let at = of
+        .points
+        .windows(3)
+        .filter(|three| three[1].is_of_flanks() && !is_clear(&three[1]) && turns(&three[0], &three[2]));
     let between = between.filter_map(|pair| problem.vertex(&pair[0], [pair[0].roll, pair[1].roll]));
     between.chain(at.map(|three| three[1].clone())).min_by(|a, b| a.roll.total_cmp(&b.roll))
 }
@@ -290,9 +291,7 @@ fn flank_end(problem: &ContactProblem, of: &Engagement, way: isize) -> Option<Co
 /// nearest to it.
 fn middle(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
     let flank: Vec<&ContactPoint> = of.points.iter().filter(|point| point.is_of_flanks()).collect();
-    let end = |way: isize, outermost: &ContactPoint| {
-        flank_end(problem, of, way).map_or(outermost.roll, |end| end.roll)
-    };
+    let end = |way: isize, outermost: &ContactPoint| flank_end(problem, of, way).map_or(outermost.roll, |end| end.roll);
     let middle = 0.5 * (end(-1, flank.first()?) + end(1, flank.last()?));
     let off = |point: &ContactPoint| (point.roll - middle).abs();
     let near = flank.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;

@@ -311,8 +311,10 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                     "one pair of teeth alone: the law does not carry a tooth of {} ({}) on while one of {} ({}) passes",
                     second.name, second.teeth, first.name, first.teeth
                 ),
-                _ => "one pair of teeth alone: no `solid` of both members and no `every` says when the next pair follows"
-                    .to_string(),
+                _ => {
+                    "one pair of teeth alone: no `solid` of both members and no `every` says when the next pair follows"
+                        .to_string()
+                }
             };
             told.push(remark(RemarkKind::OnePair, name, message));
         } else if self.is_cut_short(rolling) {

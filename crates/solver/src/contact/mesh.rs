@@ -164,9 +164,8 @@ impl ContactProblem {
         step: f64,
         settled: f64,
     ) -> Option<ContactPoint> {
-        let is_open = |point: &ContactPoint| {
-            point.is_of_flanks() && outer.is_none_or(|outer| !self.is_overtaken(point, outer))
-        };
+        let is_open =
+            |point: &ContactPoint| point.is_of_flanks() && outer.is_none_or(|outer| !self.is_overtaken(point, outer));
         let (mut low, mut high) = (0.0, 1.0);
         let mut best = inner.clone();
         for _ in 0..MOST_STEPS {
@@ -224,7 +223,8 @@ impl ContactProblem {
         near.sort_by(|a, b| (a.roll - roll).abs().total_cmp(&(b.roll - roll).abs()));
         // two of one kind lead to the same contact
         let is_one = near.windows(2).all(|two| two[0].edges == two[1].edges);
-        let found: Vec<ContactPoint> = near.iter().filter_map(|point| self.followed(point, roll)).take(if is_one { 1 } else { 2 }).collect();
+        let found: Vec<ContactPoint> =
+            near.iter().filter_map(|point| self.followed(point, roll)).take(if is_one { 1 } else { 2 }).collect();
         found.into_iter().max_by(|a, b| a.height().total_cmp(&b.height()))
     }
 }

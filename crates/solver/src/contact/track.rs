@@ -100,7 +100,8 @@ impl<'p> Track<'p> {
     /// Looks at all places from the beginning towards one side, to where the teeth have none in common any more: at some positions of each
     /// pitch, and wherever what touches is another thing than a position before.
     fn watch(&mut self, way: isize) {
-        let (Some(mut watching), Some(mut near)) = (self.problem.watching_places(), self.points.get(&0).cloned()) else {
+        let (Some(mut watching), Some(mut near)) = (self.problem.watching_places(), self.points.get(&0).cloned())
+        else {
             return;
         };
         let stride = (self.pitch / LOOKS).max(1);

@@ -84,10 +84,7 @@ pub(super) struct Watching<'w> {
 impl Watch {
     /// # Errors
     /// If something depends on a variable that is neither an unknown, nor the roll or lag, nor has a value.
-    pub(super) fn new<'g>(
-        pair: &RollingPair<'_, 'g>,
-        points: [&[SurfacePoint]; 2],
-    ) -> Result<Watch, TapeError> {
+    pub(super) fn new<'g>(pair: &RollingPair<'_, 'g>, points: [&[SurfacePoint]; 2]) -> Result<Watch, TapeError> {
         let own = [pair.surfaces[0].renamed("of the first"), pair.surfaces[1].renamed("of the second")];
         let flanks = [0, 1].map(|k| PlacedFlank { own: own[k].surface(), placement: &pair.placements[k] });
         let moved = flanks.each_ref().map(|flank| flank.own.moved(flank.placement));
@@ -114,21 +111,16 @@ impl Watch {
                     &[&moved[mate].unknowns[..], &[lag]].concat(),
                     &[&own_unknowns[..], &given].concat(),
                 )?,
-                ranges: [
-                    pair.surfaces[k].ranges().to_vec(),
-                    [pair.surfaces[mate].ranges(), &[pair.lag.1]].concat(),
-                ],
+                ranges: [pair.surfaces[k].ranges().to_vec(), [pair.surfaces[mate].ranges(), &[pair.lag.1]].concat()],
                 places,
             })
         };
         let moves = moved[1].position.derivative(lag) - moved[0].position.derivative(lag);
         let facing = moved[0].normal.dot(moved[1].normal);
-        let outputs = [&flanks[0].own.position.0[..], &flanks[1].own.position.0, &[facing, moved[0].normal.dot(moves)]].concat();
+        let outputs =
+            [&flanks[0].own.position.0[..], &flanks[1].own.position.0, &[facing, moved[0].normal.dot(moves)]].concat();
         let inputs = [&moved[0].unknowns[..], &moved[1].unknowns, &[lag], &given].concat();
-        Ok(Watch {
-            members: [watched(0)?, watched(1)?],
-            seen: LaneTape::new(&Tape::new(&outputs, &inputs)?),
-        })
+        Ok(Watch { members: [watched(0)?, watched(1)?], seen: LaneTape::new(&Tape::new(&outputs, &inputs)?) })
     }
 }
 
@@ -244,7 +236,8 @@ impl<'w> Watching<'w> {
         for chunk in reached.chunks(LANES) {
             let unknowns = |at: usize| {
                 let (member, place) = &self.places[at];
-                let (mate, lag) = self.starts[at].as_deref().and_then(|start| start.split_last().map(|(lag, mate)| (mate, *lag)))?;
+                let (mate, lag) =
+                    self.starts[at].as_deref().and_then(|start| start.split_last().map(|(lag, mate)| (mate, *lag)))?;
                 let own = &place.unknowns[..];
                 Some(if *member == 0 { [own, mate, &[lag]].concat() } else { [mate, own, &[lag]].concat() })
             };
@@ -279,7 +272,8 @@ impl<'w> Watching<'w> {
     /// Places that both teeth have and that open the pair more than something of a height, the highest first.
     pub(super) fn beyond(&self, passed: &[Option<Passed>], height: f64) -> Vec<usize> {
         let held = passed.iter().enumerate().filter_map(|(at, place)| Some((at, place.as_ref()?)));
-        let is_beyond = |(_, place): &(usize, &Passed)| place.is_held && (place.height - height) * place.opening > HIGHER;
+        let is_beyond =
+            |(_, place): &(usize, &Passed)| place.is_held && (place.height - height) * place.opening > HIGHER;
         let mut found: Vec<(usize, &Passed)> = held.filter(is_beyond).collect();
         found.sort_by(|a, b| b.1.height.total_cmp(&a.1.height));
         found.into_iter().map(|(at, _)| at).collect()
@@ -295,7 +289,9 @@ impl<'w> Watching<'w> {
         }
         let is_candidate = |at: &usize| {
             let Some(own) = held(*at).filter(|_| is_on_edge(*at)) else { return false };
-            let neighbours = [at.wrapping_sub(1), at + 1].into_iter().filter(|k| is_on_edge(*k) && self.places[*k].0 == self.places[*at].0);
+            let neighbours = [at.wrapping_sub(1), at + 1]
+                .into_iter()
+                .filter(|k| is_on_edge(*k) && self.places[*k].0 == self.places[*at].0);
             let neighbours: Vec<(usize, &Passed)> = neighbours.filter_map(|k| Some((k, passed[k].as_ref()?))).collect();
             let is_highest = neighbours.iter().all(|(k, of)| held(*k).is_none() || of.height <= own.height);
             // between places of an edge that both teeth have the parabola through three of them is no more than a quarter of that higher; where one
@@ -347,8 +343,7 @@ impl ContactProblem {
         let single = edges.iter().map(|edge| vec![*edge]);
         let own = single.chain([edges.to_vec()]).chain((!edges.is_empty()).then(Vec::new));
         let others = if is_vital { self.ways() } else { Vec::new() };
-        let mut found =
-            own.chain(others).filter_map(|edges| self.touching_near(roll, &start.unknowns, &edges, normal));
+        let mut found = own.chain(others).filter_map(|edges| self.touching_near(roll, &start.unknowns, &edges, normal));
         found.find(|point| {
             point.outcome == Outcome::Solved && point.state != Some(ContactState::Crossing) && point.height() >= least
         })
