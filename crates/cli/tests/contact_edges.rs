@@ -3,7 +3,7 @@
 mod support;
 
 use serde_json::Value;
-use support::{flank, folder, text, written};
+use support::{flank, folder, self_contained, text, written};
 
 /// What a run prints as JSON, with no picture, and its exit code.
 fn run(name: &str, arguments: &[&str]) -> (Value, i32) {
@@ -94,7 +94,7 @@ fn the_throat_of_a_wheel_carries() {
 /// Involute helicoids of 23 and 47 teeth with lead crowning `c` and profile crowning `p`.
 fn helicoids((tb, c, p, xi0): (f64, f64, f64, f64), half_width: f64, law: &str) -> String {
     format!(
-        r#"use "specs/machines/parallel_pair.chain"
+        r#"{machine}
 tool helicoid {{
     param rb : length
     param tb : number
@@ -148,6 +148,7 @@ job mine {{
     contact c = pf with gf, over: turn, for: lag
 }}
 "#,
+        machine = self_contained(&["machines/parallel_pair"]),
         back = -tb
     )
 }
