@@ -43,7 +43,7 @@ pub(crate) struct Contact {
     #[arg(long, value_name = "COUNT", default_value_t = 60, value_parser = count(4..=10_000), allow_hyphen_values = true)]
     pub(crate) positions: u32,
     /// Thickness of the marking compound
-    #[arg(long, value_name = "LENGTH", default_value = "6.35um", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", default_value = "6.35um", value_parser = length, allow_hyphen_values = true)]
     pub(crate) compound: f64,
     /// Also what each axis of the pair's machine and each setting does to the contact: 0.01 mm, 1 arcmin, or a thousandth of the value
     #[arg(long)]

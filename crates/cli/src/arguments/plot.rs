@@ -50,7 +50,7 @@ pub(crate) struct Plot {
     #[arg(long, value_name = "COUNT", value_parser = count(4..=10_000), allow_hyphen_values = true)]
     pub(crate) positions: Option<u32>,
     /// For pictures of contacts: thickness of the marking compound [default: 6.35um]
-    #[arg(long, value_name = "LENGTH", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", value_parser = length, allow_hyphen_values = true)]
     pub(crate) compound: Option<f64>,
     /// Folder for the files; made if it is not there
     #[arg(long, value_name = "DIR", default_value = "build", value_parser = folder())]

@@ -22,6 +22,9 @@ const BESIDE: f64 = 0.3;
 /// Room below this is no rounding: the tooth cuts into its mate, mm.
 const REACHES_IN: f64 = -1e-7;
 
+/// Golden sections of the way from one roll position to the next but one: to 1e-6 of it, where also a kink is as exact as room is told.
+const SECTIONS: usize = 28;
+
 /// What is known of the room in tooth spaces.
 pub(crate) struct Rooms {
     pub(crate) clearances: Vec<Clearance>,
@@ -82,16 +85,22 @@ fn clearance<'g>(
     let pair = if flank == 0 { pair } else { pair.swapped() };
     let problem = ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound");
     let opens = rolling.middle()?.opening.signum();
+    let room = |places: &[SurfacePoint], roll: f64, lag: f64| -> Vec<Option<f64>> {
+        let passed = problem.passed(roll, lag, [places, &other.points[of]]).into_iter();
+        let of_place = |[there, opening]: [f64; 2]| (opening * opens > 0.0).then_some((lag - there) * opening);
+        passed.map(|place| place.and_then(of_place)).collect()
+    };
+    let rolls: Vec<f64> = rolling.all_steps().map(|step| rolling.roll(step)).collect();
+    let at_step = |step: isize| {
+        let carried = rolling.engagement.carried(step);
+        carried.map_or(vec![None; edges.len()], |carried| room(&edges, rolling.roll(step), carried.lag))
+    };
+    let of_steps: Vec<Vec<Option<f64>>> = rolling.all_steps().map(at_step).collect();
     let mut least: Option<(f64, f64)> = None;
-    for step in rolling.all_steps() {
-        let Some(carried) = rolling.engagement.carried(step) else { continue };
-        let roll = rolling.roll(step);
-        for [lag, opening] in problem.passed(roll, carried.lag, [&edges, &other.points[of]]).into_iter().flatten() {
-            let room = (carried.lag - lag) * opening;
-            if opening * opens > 0.0 && least.is_none_or(|(least, _)| room < least) {
-                least = Some((room, roll));
-            }
-        }
+    for (place, edge) in edges.iter().enumerate() {
+        let rooms: Vec<Option<f64>> = of_steps.iter().map(|rooms| rooms[place]).collect();
+        let at = |roll: f64| room(std::slice::from_ref(edge), roll, rolling.lag_at(roll)?)[0];
+        least = least_between(&rolls, &rooms, least, at);
     }
     let (least_mm, roll) = least?;
     Some(Clearance {
@@ -100,6 +109,57 @@ fn clearance<'g>(
         least_mm,
         turn: units::shown(members.contact.roll.dimension, roll),
     })
+}
+
+/// The least of a place over the roll, and where: of its rooms at roll positions, and between those that are next to the least ones where it may be
+/// less than what is known.
+fn least_between(
+    rolls: &[f64],
+    rooms: &[Option<f64>],
+    known: Option<(f64, f64)>,
+    at: impl Fn(f64) -> Option<f64>,
+) -> Option<(f64, f64)> {
+    let room = |k: usize| rooms.get(k).copied().flatten();
+    let beside = |k: usize| [k.wrapping_sub(1), k + 1].map(room);
+    let is_least = |k: &usize| room(*k).is_some_and(|own| beside(*k).into_iter().flatten().all(|other| own <= other));
+    let mut least = known;
+    for k in (0..rooms.len()).filter(is_least) {
+        let Some(own) = room(k) else { continue };
+        if least.is_none_or(|(least, _)| own < least) {
+            least = Some((own, rolls[k]));
+        }
+        // between two positions it falls by no more than to the one that is next
+        let fall = beside(k).into_iter().flatten().map(|other| other - own).fold(0.0, f64::max);
+        if least.is_some_and(|(least, _)| own - fall > least) {
+            continue;
+        }
+        let ends = [k.saturating_sub(1), (k + 1).min(rolls.len() - 1)].map(|k| rolls[k]);
+        let found = lowest(ends, |roll| at(roll).unwrap_or(f64::INFINITY));
+        if least.is_none_or(|(least, _)| found.0 < least) {
+            least = Some(found);
+        }
+    }
+    least
+}
+
+/// The least value between two ends and where it is, by golden section.
+fn lowest([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> f64) -> (f64, f64) {
+    let share = 0.5 * (5f64.sqrt() - 1.0);
+    let inner = |low: f64, high: f64| [high - share * (high - low), low + share * (high - low)];
+    let mut places = inner(low, high);
+    let mut values = places.map(&at);
+    for _ in 0..SECTIONS {
+        if values[0] <= values[1] {
+            high = places[1];
+            let next = inner(low, high)[0];
+            (places, values) = ([next, places[0]], [at(next), values[0]]);
+        } else {
+            low = places[0];
+            let next = inner(low, high)[1];
+            (places, values) = ([places[1], next], [values[1], at(next)]);
+        }
+    }
+    if values[0] <= values[1] { (values[0], places[0]) } else { (values[1], places[1]) }
 }
 
 /// Points of a flank along the segments of its outline at which it ends.

@@ -5,6 +5,7 @@ pub(crate) mod family;
 pub(crate) mod files;
 pub(crate) mod influence;
 pub(crate) mod interference;
+mod law;
 pub(crate) mod milled;
 pub(crate) mod pair;
 pub(crate) mod patches;
@@ -268,11 +269,15 @@ fn refused(members: &Members<'_, '_>, why: NoContact) -> NotDone {
     let (message, ways) = match why {
         NoContact::Apart => (
             format!("{first} and {second} do not reach each other within the range of `{}`", lag.name),
-            vec![format!(
-                "the sampled points of {first} are met by {second} at no value of `{}` between its ends, at no position of `{}`; mount them \
-                 nearer, widen the range, or sample the flanks where they face each other",
-                lag.name, roll.name
-            )],
+            vec![
+                format!(
+                    "the sampled points of {first} are met by {second} at no value of `{}` between its ends, at no position of `{}`; widen the \
+                     range, or sample the flanks where they face each other",
+                    lag.name, roll.name
+                ),
+                "where they stay apart, mount them nearer; where the members reach into each other all the way, set them apart".to_string(),
+                "the law has to be right to a pitch: of the second member the tooth of the spec and the ones beside it are tried".to_string(),
+            ],
         ),
         NoContact::NoFlank(member) => {
             let solid = members.solids[member].map_or(String::new(), |solid| solid.name.clone());

@@ -208,20 +208,28 @@ impl<'j, 'g> Members<'j, 'g> {
             return self.contact.every;
         }
         let [Some(first), Some(second)] = self.solids else { return None };
-        let Contact { roll, lag, errors, .. } = self.contact;
-        let pair = self.pair(job, &vec![0.0; errors.len()], &[]);
-        let turns = pair.placements.each_ref().map(|placement| placement.twist(roll.variable).angular.0[2]);
-        let turns =
-            Tape::new(&turns, &[roll.variable, lag.variable]).expect("a job without errors leaves nothing unbound");
         let pitches = |share: f64| {
-            let mut out = [0.0; 2];
-            let at = [roll.low + share * (roll.high - roll.low), 0.5 * (lag.low + lag.high)];
-            ScalarEvaluator::new(&turns).run(&at, &mut out);
-            [first, second].into_iter().zip(out).map(|(solid, turn)| TAU / f64::from(solid.teeth) / turn.abs())
+            let [of_roll, _] = self.turns(job, share);
+            [first, second].into_iter().zip(of_roll).map(|(solid, turn)| TAU / f64::from(solid.teeth) / turn.abs())
         };
         let all: Vec<f64> = [0.0, 0.3, 0.6, 1.0].into_iter().flat_map(pitches).collect();
         let is_even = all.iter().all(|pitch| (pitch / all[0] - 1.0).abs() < EVEN);
         is_even.then_some(all[0])
+    }
+
+    /// How fast each member turns about its axis with the roll, then with the unknown, at a share of the range of the roll.
+    pub(crate) fn turns(&self, job: &Job<'g>, share: f64) -> [[f64; 2]; 2] {
+        let Contact { roll, lag, errors, .. } = self.contact;
+        let pair = self.pair(job, &vec![0.0; errors.len()], &[]);
+        let of =
+            |variable: Expr<'g>| pair.placements.each_ref().map(|placement| placement.twist(variable).angular.0[2]);
+        let all = [of(roll.variable), of(lag.variable)].concat();
+        let tape =
+            Tape::new(&all, &[roll.variable, lag.variable]).expect("a job without errors leaves nothing unbound");
+        let mut out = [0.0; 4];
+        let at = [roll.low + share * (roll.high - roll.low), 0.5 * (lag.low + lag.high)];
+        ScalarEvaluator::new(&tape).run(&at, &mut out);
+        [[out[0], out[1]], [out[2], out[3]]]
     }
 }
 

@@ -31,7 +31,7 @@ pub struct ContactResult {
     pub mounted: Vec<MountedError>,
     /// What the flanks are to each other; null where no contact was found.
     pub kind: Option<ContactKind>,
-    /// Where the error is extreme, or in the middle of contact of the flanks where it has no extreme.
+    /// Where the error is extreme, or in the middle of contact of the flanks where it has no extreme; where these never touch, at an edge.
     pub middle: Option<ContactMiddle>,
     /// Over one pitch about the middle.
     pub error: Option<TransmissionError>,
@@ -145,6 +145,8 @@ pub enum ContactKind {
     Line,
     /// They run into each other beside the point: not the place where the pair touches.
     Crossing,
+    /// They do not touch there: an edge of one of them does.
+    Edge,
 }
 
 /// How a member is mounted wrong.
@@ -163,6 +165,8 @@ pub struct MountedError {
 pub struct ContactMiddle {
     /// Whether the error is extreme there.
     pub is_vertex: bool,
+    /// The edge that touches instead of the flanks; null where these touch.
+    pub edge: Option<String>,
     /// The roll position.
     pub turn: f64,
     /// The error.
@@ -273,8 +277,8 @@ pub struct Clearance {
     pub of: String,
     /// The surface of the mate's space.
     pub with: String,
-    /// The least room along the normal of that surface, mm, over the roll positions and over nine places of each edge: negative where an
-    /// edge cuts into it.
+    /// The least room along the normal of that surface, mm, over the roll and over nine places of each edge: negative where an edge cuts into
+    /// it.
     pub least_mm: f64,
     /// Where that is on the roll.
     pub turn: f64,

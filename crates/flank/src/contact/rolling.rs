@@ -16,6 +16,8 @@ const STRAIGHT: f64 = 1e-12;
 
 /// Pairs of teeth whose errors differ by no more than this turn alike: rounding.
 const ALIKE: f64 = 1e-11;
+/// Steps until an extreme of the error between two positions is settled: each brings it at least twice as near.
+const EXTREME_STEPS: usize = 40;
 
 /// The teeth of the second member that are tried, by pitches.
 const TEETH: [i32; 3] = [0, 1, -1];
@@ -67,7 +69,9 @@ impl Rolling {
         let problem = ContactProblem::new(pair).expect("a job without errors leaves nothing unbound");
         let roll = &members.contact.roll;
         let limits = [roll.low, roll.high];
-        let first = found(&problem, limits, members.points.each_ref().map(Vec::as_slice))?;
+        let points = members.points.each_ref().map(Vec::as_slice);
+        let first = found(&problem, limits, points)?;
+        let problem = problem.watching(pair, points).expect("a job without errors leaves nothing unbound");
         Ok(Rolling::from_first(problem, first, (steps, every), limits))
     }
 
@@ -79,15 +83,16 @@ impl Rolling {
         limits: [f64; 2],
     ) -> Rolling {
         let has_pitch = every.is_some();
-        // of one pair alone all of the roll is looked at
-        let pitch = every.unwrap_or(0.5 * (limits[1] - limits[0]));
+        // of one pair alone all of the roll is looked at: the next one is beyond it
+        let (pitch, steps) = every.map_or((limits[1] - limits[0], 2 * steps), |pitch| (pitch, steps));
+        let coarse = if has_pitch { COARSE } else { 2 * COARSE };
         let vertex = beside(&problem, &first, pitch, limits);
         let (vertex, middle) = match vertex {
             Some(vertex) => (Some(vertex.clone()), vertex),
             None => {
-                let coarse = problem.engagement(&first, pitch, steps.min(COARSE), limits);
+                let coarse = problem.engagement(&first, pitch, steps.min(coarse), limits);
                 let vertex = among(&problem, &coarse);
-                (vertex.clone(), vertex.or_else(|| middle(&coarse)).unwrap_or_else(|| first.clone()))
+                (vertex.clone(), vertex.or_else(|| middle(&problem, &coarse)).unwrap_or_else(|| first.clone()))
             }
         };
         let engagement = problem.engagement(&middle, pitch, steps, limits);
@@ -145,21 +150,18 @@ impl Rolling {
             true => self.engagement.carried(step).map(|carried| carried.lag),
             false => self.engagement.point(0, step).map(|point| point.lag),
         };
-        // between two positions the composite is extreme where a pair hands over; the vertex is one of them
         let at_transfers = transfers.iter().filter_map(|roll| self.lag_at(*roll));
-        let lags = self.steps().filter_map(lag).chain(at_transfers);
-        lags.map(|lag| [lag, lag]).reduce(|[a, b], [c, _]| [a.min(c), b.max(c)])
+        let joined = |[a, b]: [f64; 2], lag: f64| [a.min(lag), b.max(lag)];
+        let mut lags = self.steps().filter_map(lag).chain(at_transfers);
+        let first = lags.next()?;
+        let of_positions = lags.fold([first; 2], joined);
+        let between = self.steps().filter_map(|step| self.extreme(step, of_positions));
+        Some(between.fold(of_positions, joined))
     }
 
     /// Where contact of the flanks ends before the roll does: on which side, -1 or 1, and its last point there.
     pub(crate) fn flank_ends(&self) -> Vec<(isize, ContactPoint)> {
-        let Engagement { points, is_whole, .. } = &self.engagement;
-        let outermost = [(-1, points.first(), is_whole[0]), (1, points.last(), is_whole[1])];
-        let ended = outermost.into_iter().filter(|(_, point, is_whole)| {
-            let goes_on = point.is_some_and(ContactPoint::is_of_flanks);
-            *is_whole || !goes_on
-        });
-        ended.filter_map(|(way, ..)| Some((way, self.problem.flank_end(&self.engagement, way)?))).collect()
+        [-1, 1].into_iter().filter_map(|way| Some((way, flank_end(&self.problem, &self.engagement, way)?))).collect()
     }
 
     /// How many pitches contact of the flanks lasts, between both of its ends.
@@ -176,16 +178,50 @@ impl Rolling {
         points.filter(|point| point.is_of_flanks() && point.outcome != Outcome::Solved).count()
     }
 
-    /// The composite lag at any roll position.
-    pub(crate) fn lag_at(&self, roll: f64) -> Option<f64> {
+    /// The contact that carries at any roll position.
+    pub(crate) fn carrying(&self, roll: f64) -> Option<ContactPoint> {
         let Engagement { steps, pitch, .. } = self.engagement;
         let middle = self.middle()?.roll;
         let near = ((roll - middle) / pitch * steps as f64).round() as isize;
-        let pairs = self.engagement.pairs(near).into_iter();
-        let points = pairs.filter_map(|pair| self.problem.pair_at(&self.engagement, pair, roll));
-        points
-            .max_by(|a, b| (a.lag * a.opening.signum()).total_cmp(&(b.lag * b.opening.signum())))
-            .map(|point| point.lag)
+        let pairs = if self.has_pitch { self.engagement.pairs(near) } else { vec![0] };
+        let points = pairs.into_iter().filter_map(|pair| self.problem.pair_at(&self.engagement, pair, roll));
+        points.max_by(|a, b| height(a).total_cmp(&height(b)))
+    }
+
+    /// The composite lag at any roll position.
+    pub(crate) fn lag_at(&self, roll: f64) -> Option<f64> {
+        Some(self.carrying(roll)?.lag)
+    }
+
+    /// Of the composite lag between two positions its extreme, if it has one there that lies beyond a span: on the tangents at both ends, which
+    /// meet there, or nearer to it each time.
+    fn extreme(&self, step: isize, [least, most]: [f64; 2]) -> Option<f64> {
+        let end = |step: isize| {
+            let of = if self.has_pitch { self.engagement.carried(step)?.pair } else { 0 };
+            let point = self.engagement.point(of, step)?;
+            Some([self.roll(step), point.lag, point.lag_slopes[0]])
+        };
+        let (mut low, mut high) = (end(step)?, end(step + 1)?);
+        let mut best = None;
+        for _ in 0..EXTREME_STEPS {
+            let [[a, lag_a, slope_a], [b, lag_b, slope_b]] = [low, high];
+            if slope_a * slope_b >= 0.0 {
+                break;
+            }
+            let meet = (lag_b - lag_a + slope_a * a - slope_b * b) / (slope_a - slope_b);
+            let expected = lag_a + slope_a * (meet - a);
+            if !(meet > a && meet < b) || (least..=most).contains(&expected) {
+                break;
+            }
+            let point = self.carrying(meet)?;
+            best = Some(point.lag);
+            if (point.lag - expected).abs() <= ALIKE {
+                break;
+            }
+            let there = [meet, point.lag, point.lag_slopes[0]];
+            if there[2] * slope_a > 0.0 { low = there } else { high = there }
+        }
+        best
     }
 
     /// What the flanks are to each other where they touch.
@@ -215,7 +251,7 @@ fn found(problem: &ContactProblem, limits: [f64; 2], points: [&[SurfacePoint]; 2
 
 /// Whether flank touches flank there with an error that changes.
 fn is_clear(point: &ContactPoint) -> bool {
-    point.edges.is_empty() && point.lag_slopes[0].abs() > STRAIGHT
+    point.is_of_flanks() && point.lag_slopes[0].abs() > STRAIGHT
 }
 
 /// Where the lag of contact of the flanks is extreme, within a pitch of a contact.
@@ -223,19 +259,47 @@ fn beside(problem: &ContactProblem, first: &ContactPoint, pitch: f64, limits: [f
     let is_near = |roll: f64| (roll - first.roll).abs() <= pitch && (limits[0]..=limits[1]).contains(&roll);
     let expected = first.roll - first.lag_slopes[0] / first.lag_slopes[1];
     let vertex = problem.vertex_near(Some(first).filter(|first| is_clear(first) && is_near(expected))?)?;
-    (vertex.edges.is_empty() && is_near(vertex.roll)).then_some(vertex)
+    (vertex.is_of_flanks() && is_near(vertex.roll)).then_some(vertex)
 }
 
-/// The same between points of a pair.
+/// The same between points of a pair, or at one of them.
 fn among(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
     let slope = |point: &ContactPoint| point.lag_slopes[0];
-    let pairs = of.points.windows(2).filter(|pair| pair.iter().all(is_clear));
-    let turns = pairs.filter(|pair| slope(&pair[0]).signum() != slope(&pair[1]).signum());
-    turns.filter_map(|pair| problem.vertex(&pair[0], [pair[0].roll, pair[1].roll])).next()
+    let turns = |before: &ContactPoint, after: &ContactPoint| {
+        is_clear(before) && is_clear(after) && slope(before).signum() != slope(after).signum()
+    };
+    let between = of.points.windows(2).filter(|pair| turns(&pair[0], &pair[1]));
+    let at = of
+        .points
+        .windows(3)
+        .filter(|three| three[1].is_of_flanks() && !is_clear(&three[1]) && turns(&three[0], &three[2]));
+    let between = between.filter_map(|pair| problem.vertex(&pair[0], [pair[0].roll, pair[1].roll]));
+    between.chain(at.map(|three| three[1].clone())).min_by(|a, b| a.roll.total_cmp(&b.roll))
 }
 
-/// The middle of contact of the flanks.
-fn middle(of: &Engagement) -> Option<ContactPoint> {
+/// Where contact of the flanks ends on a side, -1 or 1, if it does so before the roll.
+fn flank_end(problem: &ContactProblem, of: &Engagement, way: isize) -> Option<ContactPoint> {
+    let (outermost, is_whole) = match way {
+        -1 => (of.points.first(), of.is_whole[0]),
+        _ => (of.points.last(), of.is_whole[1]),
+    };
+    let goes_on = outermost.is_some_and(ContactPoint::is_of_flanks);
+    if is_whole || !goes_on { problem.flank_end(of, way) } else { None }
+}
+
+/// The middle of contact of the flanks, between its ends or those of the roll; where the flanks do not touch there, the point of theirs that is
+/// nearest to it.
+fn middle(problem: &ContactProblem, of: &Engagement) -> Option<ContactPoint> {
     let flank: Vec<&ContactPoint> = of.points.iter().filter(|point| point.is_of_flanks()).collect();
-    flank.get(flank.len() / 2).map(|point| (*point).clone())
+    let end = |way: isize, outermost: &ContactPoint| flank_end(problem, of, way).map_or(outermost.roll, |end| end.roll);
+    let middle = 0.5 * (end(-1, flank.first()?) + end(1, flank.last()?));
+    let off = |point: &ContactPoint| (point.roll - middle).abs();
+    let near = flank.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))?;
+    let there = problem.followed(near, middle).filter(ContactPoint::is_of_flanks);
+    Some(there.unwrap_or_else(|| near.clone()))
+}
+
+/// The lag, with the sign with which more of it opens the pair.
+fn height(point: &ContactPoint) -> f64 {
+    point.lag * point.opening.signum()
 }

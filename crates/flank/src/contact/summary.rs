@@ -3,6 +3,7 @@
 use flank_chain_dsl::{Dimension, Job};
 use flank_solver::{ContactPoint, ContactState, FlankEdge};
 
+use crate::contact::law;
 use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
 use crate::contact::place::{fine, fine_unit, rows_at, shares};
@@ -21,8 +22,9 @@ use crate::solve::blank;
 
 /// A contact this near to an edge lies on it: it is looked for by halving the roll, mm.
 const ON_EDGE: f64 = 1e-6;
-/// A gap below this is no rounding: the mate reaches in, mm.
-pub(crate) const REACHES_IN: f64 = -1e-7;
+/// A gap below this is no rounding: the mate reaches in, mm. Flanks whose normals are opposite to 1e-8 rad count as touching along a line, which
+/// leaves as much over 100 mm of it.
+pub(crate) const REACHES_IN: f64 = -1e-6;
 
 /// What numbers of a contact are told of.
 pub(crate) struct Summary<'s, 'j, 'g> {
@@ -106,7 +108,9 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
 
     pub(crate) fn of_rolling(&self, rolling: &Rolling, patterns: &[GapMap]) -> ContactResult {
         let ends = rolling.flank_ends();
+        let is_of_edge = rolling.middle().is_some_and(|middle| !middle.is_of_flanks());
         let kind = rolling.state().map(|state| match state {
+            _ if is_of_edge => ContactKind::Edge,
             ContactState::Touching => ContactKind::Point,
             ContactState::Line => ContactKind::Line,
             ContactState::Crossing => ContactKind::Crossing,
@@ -130,7 +134,8 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let speed = |v: &[f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let per_roll = units::shown(self.over(), 1.0);
         ContactMiddle {
-            is_vertex: rolling.vertex.is_some(),
+            is_vertex: rolling.vertex.is_some() && point.is_of_flanks(),
+            edge: (!point.is_of_flanks()).then(|| self.whole_edge_name(&point.edges)),
             turn: self.turn(point.roll),
             error: units::shown(self.unknown(), point.lag),
             parabola: self.fine(point.lag_slopes[1]) / (per_roll * per_roll),
@@ -255,6 +260,17 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                     .to_string();
             told.push(NotDone::new(NotDoneKind::NotSolved, first, message).with(vec![way]));
         }
+        told.extend(law::broken(self.job, self.members, rolling));
+        if let Some(roll) = rolling.engagement.missed.first() {
+            let (dimension, roll_name) = (self.over(), &self.members.contact.roll.name);
+            let count = units::counted(rolling.engagement.missed.len(), "position");
+            let message = format!(
+                "contact {name}: at {count} of `{roll_name}`, first at {}, {first} and {second} come together before the contact that was found",
+                units::text(dimension, *roll, 3)
+            );
+            let way = "what is told of the error there is too little; more positions of the roll and more points of both samples help".to_string();
+            told.push(NotDone::new(NotDoneKind::NotSolved, first, message).with(vec![way]));
+        }
         let least = patterns.iter().filter_map(|map| map.pattern.least_um).reduce(f64::min);
         if let Some(least) = least.filter(|least| *least < 1e3 * REACHES_IN) {
             let message = format!(
@@ -290,9 +306,16 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             told.push(remark(RemarkKind::NoEdges, &surface.name, message));
         }
         if !rolling.has_pitch {
-            let message =
-                "one pair of teeth alone: no `solid` of both members and no `every` says when the next pair follows"
-                    .to_string();
+            let message = match self.members.solids {
+                [Some(first), Some(second)] => format!(
+                    "one pair of teeth alone: the law does not carry a tooth of {} ({}) on while one of {} ({}) passes",
+                    second.name, second.teeth, first.name, first.teeth
+                ),
+                _ => {
+                    "one pair of teeth alone: no `solid` of both members and no `every` says when the next pair follows"
+                        .to_string()
+                }
+            };
             told.push(remark(RemarkKind::OnePair, name, message));
         } else if self.is_cut_short(rolling) {
             let message = format!(

@@ -125,15 +125,19 @@ impl ContactResult {
                 .map_or(String::new(), |angle| format!("; the path at {} deg to its rows", fixed(angle, 1)));
             facts.push(("middle", format!("{shares}z {z} mm, rho {rho} mm on {}{path}", member.surface)));
         }
-        let vertex =
-            if middle.is_vertex { "where the error is extreme" } else { "in the middle of contact of the flanks" };
+        let vertex = match (middle.is_vertex, &middle.edge) {
+            (_, Some(_)) => "where an edge touches and the flanks do not",
+            (true, None) => "where the error is extreme",
+            (false, None) => "in the middle of contact of the flanks",
+        };
         facts.push(("roll", format!("{over} {} {over_unit}, {vertex}", fixed(middle.turn, 3))));
-        let kind = match self.kind {
-            Some(ContactKind::Line) => "line contact",
-            Some(ContactKind::Crossing) => {
-                "no contact: the flanks run into each other beside the point, so that edges carry"
+        let kind = match (self.kind, &middle.edge) {
+            (Some(ContactKind::Line), _) => "line contact".to_string(),
+            (Some(ContactKind::Crossing), _) => {
+                "no contact: the flanks run into each other beside the point, so that edges carry".to_string()
             }
-            _ => "contact in a point",
+            (_, Some(edge)) => format!("contact at an edge: {edge}"),
+            _ => "contact in a point".to_string(),
         };
         let gap =
             middle.gap.map_or(String::new(), |[a, b]| format!(", gap curvatures {} and {} 1/mm", small(a), small(b)));

@@ -192,6 +192,7 @@ fn kind(result: &ContactResult) -> &'static str {
         Some(ContactKind::Point) => "point contact",
         Some(ContactKind::Line) => "line contact",
         Some(ContactKind::Crossing) => "the flanks run into each other beside the point",
+        Some(ContactKind::Edge) => "contact at an edge",
         None => "",
     }
 }

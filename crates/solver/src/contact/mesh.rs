@@ -5,6 +5,7 @@
 
 use crate::contact::ContactProblem;
 use crate::contact::point::{ContactPoint, ContactState, Member};
+use crate::contact::track::Track;
 
 /// Steps of Newton, safeguarded by halving, until a place of the roll is settled, and the share of a pitch at which it is.
 const MOST_STEPS: usize = 60;
@@ -30,6 +31,8 @@ pub struct Engagement {
     pub points: Vec<ContactPoint>,
     /// Whether it ends before a limit of the roll: the pair is out of reach there.
     pub is_whole: [bool; 2],
+    /// Roll positions at which a place of the teeth opens the pair more than any contact that was found: what is known of them is too little.
+    pub missed: Vec<f64>,
 }
 
 /// Which pair carries at a roll position, and the one next to it.
@@ -46,26 +49,12 @@ pub struct Carried {
 impl ContactProblem {
     /// The pair that touches at a contact, followed by even steps of the roll until it no longer touches, or to the ends of the roll.
     pub fn engagement(&self, from: &ContactPoint, pitch: f64, steps: usize, limits: [f64; 2]) -> Engagement {
-        let follow = |way: isize| {
-            let mut found: Vec<ContactPoint> = Vec::new();
-            loop {
-                let at = found.last().unwrap_or(from);
-                let roll = from.roll + (way * (found.len() as isize + 1)) as f64 * pitch / steps as f64;
-                if !(limits[0]..=limits[1]).contains(&roll) {
-                    return (found, false);
-                }
-                match self.followed(at, roll) {
-                    Some(next) => found.push(next),
-                    None => return (found, true),
-                }
-            }
-        };
-        let ((mut points, begins), (after, ends)) = rayon::join(|| follow(-1), || follow(1));
-        let first = -(points.len() as isize);
-        points.reverse();
-        points.push(from.clone());
-        points.extend(after);
-        Engagement { pitch, steps, first, points, is_whole: [begins, ends] }
+        let track = Track::new(self, from, (pitch, steps, limits)).watched();
+        let missed = track.missed();
+        let (first, points) = track.contiguous();
+        let last = first + points.len() as isize - 1;
+        let is_whole = [first - 1, last + 1].map(|step| track.roll(step).is_some());
+        Engagement { pitch, steps, first, points, is_whole, missed }
     }
 
     /// Where on the roll a contact of flank on flank begins or ends beside a point of it: where it comes to an edge, or the end of what a
@@ -78,7 +67,18 @@ impl ContactProblem {
             Some(ContactState::Line) => self.end_of_lines(inner, inner.roll + step),
             _ => self.end_at_edge(inner, inner.roll + step),
         };
-        at_edge.or_else(|| self.end_by_halving(inner, step, SETTLED * of.pitch))
+        // an edge may open the pair more before
+        let outer = match way {
+            -1 => of.points.iter().rev().find(|point| point.roll < inner.roll),
+            _ => of.points.iter().find(|point| point.roll > inner.roll),
+        };
+        let is_open = |end: &ContactPoint| outer.is_none_or(|outer| !self.is_overtaken(end, outer));
+        at_edge.filter(is_open).or_else(|| self.end_by_halving(inner, outer, step, SETTLED * of.pitch))
+    }
+
+    /// Whether another contact of the same teeth, followed to the roll position of one, opens the pair more.
+    fn is_overtaken(&self, point: &ContactPoint, by: &ContactPoint) -> bool {
+        self.followed(by, point.roll).is_some_and(|other| other.is_beyond(point.height()))
     }
 
     /// Where the line along which the flanks touch leaves them at a corner, between a point inside and a roll position at which the corner
@@ -155,8 +155,17 @@ impl ContactProblem {
         None
     }
 
-    /// The last point of contact of the flanks within a step of the roll, found by halving.
-    fn end_by_halving(&self, inner: &ContactPoint, step: f64, settled: f64) -> Option<ContactPoint> {
+    /// The last point of contact of the flanks within a step of the roll, beyond which an outer contact opens the pair more or there is none:
+    /// found by halving.
+    fn end_by_halving(
+        &self,
+        inner: &ContactPoint,
+        outer: Option<&ContactPoint>,
+        step: f64,
+        settled: f64,
+    ) -> Option<ContactPoint> {
+        let is_open =
+            |point: &ContactPoint| point.is_of_flanks() && outer.is_none_or(|outer| !self.is_overtaken(point, outer));
         let (mut low, mut high) = (0.0, 1.0);
         let mut best = inner.clone();
         for _ in 0..MOST_STEPS {
@@ -164,7 +173,7 @@ impl ContactProblem {
             if (high - low) * step.abs() <= settled {
                 break;
             }
-            match self.followed(&best, inner.roll + share * step).filter(ContactPoint::is_of_flanks) {
+            match self.followed(&best, inner.roll + share * step).filter(is_open) {
                 Some(point) => (best, low) = (point, share),
                 None => high = share,
             }
@@ -205,11 +214,18 @@ impl ContactProblem {
         Some(at)
     }
 
-    /// A pair, some pitches ahead, at a roll position of the first.
+    /// A pair, some pitches ahead, at a roll position of the first: of what its neighbours on both sides lead to, that which opens the pair
+    /// more.
     pub fn pair_at(&self, of: &Engagement, pair: isize, roll: f64) -> Option<ContactPoint> {
         let roll = roll + pair as f64 * of.pitch;
-        let near = of.points.iter().min_by(|a, b| (a.roll - roll).abs().total_cmp(&(b.roll - roll).abs()))?;
-        self.followed(near, roll)
+        let after = of.points.partition_point(|point| point.roll < roll);
+        let mut near: Vec<&ContactPoint> = of.points[after.saturating_sub(1)..].iter().take(2).collect();
+        near.sort_by(|a, b| (a.roll - roll).abs().total_cmp(&(b.roll - roll).abs()));
+        // two of one kind lead to the same contact
+        let is_one = near.windows(2).all(|two| two[0].edges == two[1].edges);
+        let found: Vec<ContactPoint> =
+            near.iter().filter_map(|point| self.followed(point, roll)).take(if is_one { 1 } else { 2 }).collect();
+        found.into_iter().max_by(|a, b| a.height().total_cmp(&b.height()))
     }
 }
 

@@ -16,6 +16,10 @@ mod proof;
 mod start;
 mod synthesis;
 mod touching;
+mod track;
+mod watch;
+
+use std::sync::Arc;
 
 use flank_expr::geometry::{Chain, Surface, Vector3};
 use flank_expr::{Expr, Tape, TapeError};
@@ -35,6 +39,7 @@ pub use point::{ContactPoint, ContactState};
 pub use proof::ContactProof;
 pub use start::NoContact;
 pub use synthesis::{ContactNumber, ContactSynthesis, ContactWish, SynthesizedContact};
+use watch::Watch;
 
 /// Two surfaces that roll on each other.
 #[derive(Clone, Debug)]
@@ -85,6 +90,8 @@ pub struct ContactProblem {
     values: Vec<f64>,
     /// Where an edge of either flank may touch.
     edges: Option<EdgeSystems>,
+    /// Where else the pair may touch first.
+    watch: Option<Arc<Watch>>,
 }
 
 impl ContactProblem {
@@ -128,6 +135,7 @@ impl ContactProblem {
             outlines: pair.outlines.clone(),
             values: pair.parameters.iter().map(|(_, value)| *value).collect(),
             edges,
+            watch: None,
         })
     }
 

@@ -131,7 +131,7 @@ impl ContactProblem {
     }
 
     /// With which edges a contact is looked for: flank on flank first, then each edge, then each corner of an outline.
-    fn ways(&self) -> Vec<Vec<FlankEdge>> {
+    pub(super) fn ways(&self) -> Vec<Vec<FlankEdge>> {
         let segments = |member: usize| self.outlines[member].as_ref().map_or(0, |outline| outline.segments().len());
         let edges = |member: usize| (0..segments(member)).map(move |segment| vec![FlankEdge { member, segment }]);
         let corners = |member: usize| {
@@ -194,7 +194,7 @@ impl ContactProblem {
     }
 
     /// Of both members at a lag and a roll position.
-    fn poses_at(&self, lag: f64, roll: f64) -> [Pose; 2] {
+    pub(super) fn poses_at(&self, lag: f64, roll: f64) -> [Pose; 2] {
         let mut poses = [0.0; 24];
         let inputs: Vec<f64> = [lag].into_iter().chain(self.given(roll)).collect();
         ScalarEvaluator::new(&self.poses).run(&inputs, &mut poses);

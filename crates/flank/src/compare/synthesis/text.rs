@@ -67,6 +67,7 @@ impl CheckedContact {
             Some(ContactKind::Point) => "contact in a point",
             Some(ContactKind::Line) => "contact along a line",
             Some(ContactKind::Crossing) => "the flanks run into each other",
+            Some(ContactKind::Edge) => "contact at an edge",
             None => "no contact",
         };
         let mut words = vec![kind.to_string()];
