@@ -8,6 +8,7 @@ pub(crate) mod ends;
 pub(crate) mod gauges;
 pub(crate) mod mounted;
 pub(crate) mod piece;
+pub(crate) mod refusal;
 pub(crate) mod result;
 pub(crate) mod shape;
 pub(crate) mod smooth;
@@ -74,8 +75,7 @@ fn built(
                 solids.push(numbers);
                 made.push(shapes);
             }
-            Err(Failure::Input(reason)) => not_done.push(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
-            Err(other) => return Err(other),
+            Err(failure) => not_done.push(refusal::no_body(solid, failure)?),
         }
     }
     let is_pair = request.part == SolidPart::Gear && made.len() > 1;
