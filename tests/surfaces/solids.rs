@@ -479,6 +479,53 @@ fn what_bounds_no_body_is_told_with_its_number() {
     assert!(told.contains("`right_fillet` does not reach `tip`") && told.contains("`theta` by "), "{told}");
 }
 
+/// Balls between two pins of a ring, by the distance of their centres, which stay clear of the ground that the pins stand out of: the program's
+/// own choice does, and another one is refused with how deep it would lie.
+#[test]
+fn balls_stay_clear_of_the_ground_between_flanks() {
+    let asked =
+        |ball: Option<f64>| Asked { ball, ..Asked::new("specs/bodies/pin_ring_body.chain", "pin_ring_body", &[]) };
+    let (ring, pin, half) = (60.0, 6.0, PI / 12.0);
+    let ground = f64::hypot(ring, pin);
+    let centre = |ball: f64| {
+        let apart = pin + 0.5 * ball;
+        ring * half.cos() - (apart * apart - (ring * half.sin()).powi(2)).sqrt()
+    };
+    let balls = asked(None).only().0.gauges.balls.expect("one fits");
+    let near = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-7, "{found}, not {exact}");
+    near(balls.over_balls_mm, 2.0 * centre(balls.ball_mm) - balls.ball_mm);
+    assert!(centre(balls.ball_mm) + 0.5 * balls.ball_mm < ground, "{balls:?}");
+    let refused = |ball: f64| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let result = asked(Some(ball)).built(folder.path());
+        assert!(result.solids[0].gauges.balls.is_none() && result.not_done()[0].kind == NotDoneKind::NoBall);
+        result.not_done()[0].message.clone()
+    };
+    let deep = centre(20.5) + 10.25 - ground;
+    assert!(refused(20.5).ends_with(&format!("would lie {deep:.4} mm deep in the steel of `ground`")), "{deep}");
+    let set = [("pins", "3")];
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = Asked { set: &set, ..asked(Some(98.25)) }.built(folder.path());
+    assert!(result.not_done()[0].message.ends_with("in opposite spaces of `ring` would lie in each other"), "{result}");
+    let none = Asked { set: &set, ..asked(None) }.only().0.gauges.balls;
+    assert!(none.as_ref().is_none_or(|balls| balls.over_balls_mm > 0.0), "{none:?}");
+}
+
+/// Members that reach into each other are told as such, as `flank contact` does, and not as meshing.
+#[test]
+fn pairs_that_reach_into_each_other_do_not_mesh() {
+    for (starts, reaches_in) in [("1", false), ("3", true)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let set = [("starts", starts)];
+        let pair = Asked::new("specs/bodies/worm_and_wheel_body.chain", "worm_and_wheel_body", &set);
+        let result = Asked { deviation: 0.1, ..pair }.built(folder.path());
+        let told: Vec<NotDoneKind> = result.not_done().iter().map(|told| told.kind).collect();
+        assert_eq!(told, if reaches_in { vec![NotDoneKind::Penetration] } else { Vec::new() }, "{starts}");
+        assert_eq!(result.to_string().contains("stand as they mesh in the middle"), !reaches_in, "{result}");
+        assert_eq!(result.to_string().contains("and reach into each other"), reaches_in, "{result}");
+    }
+}
+
 /// Where the bore is too large by the space's whole depth, that is what is told, whatever is looked at first.
 #[test]
 fn how_far_spaces_go_through_the_bore_is_measured_where_they_go_farthest() {

@@ -241,8 +241,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     }
 
     fn not_done(&self, rolling: &Rolling, patterns: &[GapMap]) -> Vec<NotDone> {
-        let [first, second] = self.members.surfaces.map(|surface| &surface.name);
-        let name = &self.members.contact.name;
+        let (first, name) = (&self.members.surfaces[0].name, &self.members.contact.name);
         let mut told = Vec::new();
         let outside = rolling.outside();
         if outside > 0 {
@@ -255,14 +254,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                     .to_string();
             told.push(NotDone::new(NotDoneKind::NotSolved, first, message).with(vec![way]));
         }
-        let least = patterns.iter().filter_map(|map| map.pattern.least_um).reduce(f64::min);
-        if let Some(least) = least.filter(|least| *least < 1e3 * REACHES_IN) {
-            let message = format!(
-                "contact {name}: {first} and {second} reach into each other by {} um where they should touch",
-                units::scientific(-least, 2)
-            );
-            told.push(NotDone::new(NotDoneKind::Penetration, first, message));
-        }
+        told.extend(penetration(self.members, patterns));
         told
     }
 
@@ -351,4 +343,17 @@ pub(crate) fn backlash(
         }));
     }
     Ok(None)
+}
+
+/// Whether the flanks reach into each other where they should touch.
+pub(crate) fn penetration(members: &Members<'_, '_>, patterns: &[GapMap]) -> Option<NotDone> {
+    let [first, second] = members.surfaces.map(|surface| &surface.name);
+    let least = patterns.iter().filter_map(|map| map.pattern.least_um).reduce(f64::min);
+    let least = least.filter(|least| *least < 1e3 * REACHES_IN)?;
+    let message = format!(
+        "contact {}: {first} and {second} reach into each other by {} where they should touch",
+        members.contact.name,
+        units::length(-1e-3 * least)
+    );
+    Some(NotDone::new(NotDoneKind::Penetration, first, message))
 }

@@ -149,6 +149,12 @@ impl<Kind> Message<Kind> {
         Message { details, ..self }
     }
 
+    /// With more lines below the message.
+    pub(crate) fn with_more(mut self, details: Vec<String>) -> Message<Kind> {
+        self.details.extend(details);
+        self
+    }
+
     /// Its message, then its details.
     pub(crate) fn lines(&self) -> impl Iterator<Item = String> {
         std::iter::once(self.message.clone()).chain(self.details.iter().cloned())

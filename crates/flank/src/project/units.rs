@@ -64,6 +64,12 @@ pub(crate) fn length(mm: f64) -> String {
     }
 }
 
+/// How far something is off, in um: by three decimals unless these say nothing of it.
+pub(crate) fn off(mm: f64) -> String {
+    let um = 1e3 * mm;
+    if um == 0.0 || um >= 1e-2 { format!("{um:.3} um") } else { format!("{um:.1e} um") }
+}
+
 /// A value in its unit, with some decimals.
 pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
     format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()

@@ -160,7 +160,7 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
                 }
                 SolidNumber::OverBalls(ball) => {
                     let found = body.ball(ball).map(|found| found.over_balls);
-                    found.ok_or_else(|| format!("no ball of {ball} mm touches both flanks of {name}"))?
+                    found.map_err(|_| format!("no ball of {ball} mm touches both flanks of {name} and nothing else"))?
                 }
             })
         }))

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BrickBody, BrickSet, Header};
 use flank_expr::Graph;
-use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickSide};
+use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickSide, SpacePart};
 
-use crate::project::choices::{BrickFormat, ElementOrder};
+use crate::project::choices::{BrickFormat, Choice, ElementOrder};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
@@ -18,6 +18,7 @@ use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::body::bricks_result::{BrickNumbers, MeshResult};
+use crate::solve::body::file_of;
 use crate::solve::body::refusal;
 use crate::solve::body::space::{self, Space};
 use crate::solve::dataset::header;
@@ -64,6 +65,11 @@ fn meshed(
             },
             Err(failure) => not_done.push(refusal::no_body(solid, failure)?),
         }
+    }
+    for told in &mut not_done {
+        let solid = job.solids.iter().find(|solid| told.of.as_ref() == Some(&solid.name));
+        let formats = request.format.iter().map(|format| format.name());
+        told.details.extend(solid.into_iter().flat_map(|solid| folder.older(&file_of(job, solid), formats.clone())));
     }
     Ok(MeshResult {
         job: job.name.clone(),
@@ -120,7 +126,7 @@ fn one(
         return refused(message, &["other numbers with option `elements`", simpler]);
     }
     let sets = sets(&mesh, body, &names(space, body), teeth);
-    let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
+    let file = file_of(job, solid);
     let written = BrickBody {
         name: &solid.name,
         frame: &solid.frame,
@@ -156,20 +162,18 @@ fn check_size(name: &str, [bricks, nodes]: [usize; 2], order: BrickOrder) -> Res
 
 /// What the sets on charts are called, in the order of the body.
 fn names(space: &Space, body: &Body) -> Vec<String> {
-    let (charts, is_reversed) = (body.charts(), body.is_reversed());
-    let count = charts.len();
-    let name = |k: usize| {
+    let (count, is_reversed) = (body.charts().len(), body.is_reversed());
+    let name = |(k, part): (usize, SpacePart)| {
         let own = &space.names[if is_reversed { count - 1 - k } else { k }];
-        let kind = if k == 0 || k + 1 == count {
-            "FLANK"
-        } else if 2 * k + 1 == count {
-            "ROOT"
-        } else {
-            "FILLET"
+        let kind = match part {
+            SpacePart::Chamfer => "CHAMFER",
+            SpacePart::Flank => "FLANK",
+            SpacePart::Fillet => "FILLET",
+            SpacePart::Root => "ROOT",
         };
         format!("{kind}_{}", set_name(own))
     };
-    (0..count).map(name).collect()
+    body.space_parts().into_iter().enumerate().map(name).collect()
 }
 
 /// As readers of input files take names: they do not tell small letters from large ones.
