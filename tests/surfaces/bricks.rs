@@ -232,6 +232,30 @@ fn volumes_converge_to_that_of_the_body() {
     }
 }
 
+/// A chamfer above the flank is no flank, and halves of the root are root: sets have true names, and bricks up the flank are counted there.
+#[test]
+fn surfaces_of_a_space_have_the_names_of_what_they_are() {
+    let asked = Asked { elements: [6, 4, 4], ..Asked::new("specs/bodies/semi_topped_gear_body.chain", "") };
+    let (numbers, deck) = asked.only();
+    let names: Vec<&str> = numbers.sets.iter().map(|set| set.name.as_str()).take(8).collect();
+    let sides = |kind: &str, name: &str| ["MINUS", "PLUS"].map(|side| format!("{kind}_{side}_{name}"));
+    let kinds = [("CHAMFER", "CHAMFER"), ("FLANK", "FLANK"), ("FILLET", "ROUNDING"), ("ROOT", "TIP")];
+    for (place, (kind, name)) in kinds.into_iter().enumerate() {
+        let both = [names[place], names[7 - place]];
+        assert!(sides(kind, name).iter().all(|side| both.contains(&side.as_str())), "{both:?}");
+    }
+    let across = &numbers.elements.across;
+    assert_eq!([across[1], across[6]], [6, 6], "{across:?}");
+    assert!(across[0] < 3 && numbers.bricks < 1500, "{across:?} {} bricks", numbers.bricks);
+    // involutes from the form diameter on, module 3, 24 teeth; the chamfer begins above the middle of the tooth
+    let rho = |name: &str| deck.node_sets[name].iter().map(|node| deck.nodes[*node][0].hypot(deck.nodes[*node][1]));
+    let highest = rho("FLANK_MINUS_FLANK").fold(0.0, f64::max);
+    assert!(rho("CHAMFER_MINUS_CHAMFER").all(|rho| rho > highest - 1e-9 && rho > 37.0), "{highest}");
+    let worm_wheel = Asked { elements: [4, 4, 4], ..Asked::new("specs/bodies/worm_wheel_body.chain", "") }.only().0;
+    let roots = worm_wheel.sets.iter().filter(|set| set.name.starts_with("ROOT_")).count();
+    assert_eq!(roots, 2, "{:?}", worm_wheel.sets);
+}
+
 /// Bodies that the layout does not fit: lobes and pins without a land, tips that are generated, and a thread of one start, along which a section across the axis runs.
 const REFUSED: [(&str, &str); 5] = [
     ("gear", "end in an edge"),
@@ -279,4 +303,8 @@ fn what_cannot_be_cut_is_told_with_its_reason() {
     assert_eq!(result.not_done()[0].message, "`gear` has 24 teeth: there are no 25 of them");
     let (result, files) = Asked { set: &[("bore", "35 mm")], ..Asked::new(BODIES, "helical") }.meshed();
     assert!(files.is_empty() && result.not_done()[0].message.contains("mm through `bore` of its outline"), "{result}");
+    let (result, files) = Asked { set: &[("bore", "0 mm")], ..Asked::new(BODIES, "helical") }.meshed();
+    let told = &result.not_done()[0];
+    assert!(files.is_empty() && told.message.contains("the blank of `gear` reaches its axis"), "{told}");
+    assert!(told.details[0].starts_with("a bore, however small") && told.kind == NotDoneKind::NoBricks, "{told}");
 }

@@ -28,7 +28,7 @@ impl Solve {
         Ok(SolveRequest {
             jobs: self.which.jobs()?,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             step: self.faces.step,
             limits: self.limits,
             no_picture: self.no_picture,
@@ -49,7 +49,7 @@ impl Solve {
             jobs: self.which.jobs()?,
             part,
             out: self.out.clone(),
-            format: self.format.iter().map(|format| mesh_format(*format)).collect::<Result<_, _>>()?,
+            format: once(&self.format).into_iter().map(mesh_format).collect::<Result<_, _>>()?,
             step: self.faces.step,
             deviation: self.body.deviation,
             density: self.body.density,
@@ -57,6 +57,12 @@ impl Solve {
             evaluator: self.evaluator.evaluator(),
         }))
     }
+}
+
+/// Formats, each once.
+fn once<Format: Copy + PartialEq>(formats: &[Format]) -> Vec<Format> {
+    let is_new = |k: &usize| !formats[..*k].contains(&formats[*k]);
+    (0..formats.len()).filter(is_new).map(|k| formats[k]).collect()
 }
 
 fn mesh_format(format: PointFormat) -> Result<MeshFormat, Failure> {
@@ -78,7 +84,7 @@ impl Mesh {
             elements: self.elements,
             order: self.order,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             evaluator: self.evaluator.evaluator(),
         })
     }
@@ -98,7 +104,7 @@ impl Plot {
             positions: self.positions,
             compound: self.compound,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             size: self.size,
             no_origin: self.no_origin,
             evaluator: self.evaluator.evaluator(),
@@ -111,7 +117,7 @@ impl Report {
         Ok(ReportRequest {
             jobs: self.which.jobs()?,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             certify: self.certify,
             step: self.faces.step,
             date: self.date.clone(),
@@ -139,7 +145,7 @@ impl Deviation {
             margin: self.margin.margin,
             no_align: self.no_align,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             no_picture: self.no_picture,
             evaluator: self.evaluator.evaluator(),
         })
@@ -232,7 +238,7 @@ impl Contact {
             certify: self.certify,
             milled: self.milled.clone(),
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             no_picture: self.no_picture,
             evaluator: self.evaluator.evaluator(),
         })
@@ -245,7 +251,7 @@ impl Mill {
             jobs: self.which.jobs()?,
             milling: self.milling.clone(),
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             nc: self.nc.clone(),
             tool_centre_control: self.tool_centre_control,
             feed: self.feed,
@@ -273,7 +279,7 @@ impl Measure {
             margin: self.margin.margin,
             lines: self.lines,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             evaluator: self.evaluator.evaluator(),
         })
     }
@@ -302,7 +308,7 @@ impl Convert {
             order: self.order,
             tolerance: self.tolerance,
             out: self.out.clone(),
-            format: self.format.clone(),
+            format: once(&self.format),
             no_tables: false,
             nc: self.nc.clone(),
             time: self.time,

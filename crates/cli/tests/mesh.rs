@@ -121,6 +121,28 @@ fn documents_have_the_numbers() {
     assert!(pinion["least_scaled_jacobian"].as_f64().expect("a number") >= 0.2, "{pinion}");
 }
 
+/// What a run does not make anew is named where it lies there from an earlier one; a format that is named twice is one file.
+#[test]
+fn files_of_earlier_runs_are_told_and_those_of_this_one_once() {
+    let out = folder("mesh_older");
+    let spec = "specs/bodies/spur_gear_body.chain";
+    let to = out.to_str().expect("a plain path");
+    let told = text(&run(&[spec, "--teeth", "2", "--elements", "2,1,3", "--format", "inp,inp"], &out, 0).stdout);
+    assert_eq!(told.matches("spur_gear_body.inp").count(), 1, "{told}");
+    assert!(told.contains("; _T2 on the other tooth\n"), "{told}");
+    let told = text(&run(&[spec, "--set", "teeth=4", "--elements", "2,1,3"], &out, 3).stderr);
+    assert!(told.contains("spur_gear_body.inp` is there from an earlier run"), "{told}");
+    for (wrong, reason) in [
+        (["--ball", "-1mm"], "a length above zero is needed"),
+        (["--deviation", "-1um"], "a length above zero is needed"),
+        (["--density", "-1 kg/m3"], "write a density above zero in kg/m3 or g/cm3"),
+    ] {
+        let run = flank(&[&["solve", spec, "--solid", "gear", "--out", to], &wrong[..]].concat());
+        assert_eq!(run.status.code(), Some(2));
+        assert!(text(&run.stderr).contains(reason), "{}", text(&run.stderr));
+    }
+}
+
 #[test]
 fn what_cannot_be_meshed_is_told_with_its_code() {
     let out = folder("mesh_refused");

@@ -193,6 +193,47 @@ fn opencascade_finds_the_arcs_of_a_blank() {
     }
 }
 
+/// A blank that goes as far as its axis: no face and no circle there, and one solid of genus 0, as large as flank says.
+#[test]
+fn opencascade_finds_one_closed_body_without_a_bore() {
+    let out = folder("step-shaft");
+    let to = out.to_str().expect("a plain path");
+    let whole = self_contained(&[
+        "machines/hobbing_6axis",
+        "machines/rack_generating",
+        "tools/rack",
+        "hobbing/spur_gear",
+        "bodies/spur_gear_body",
+    ]);
+    let spec = written(&out, "shaft.chain", &whole.replace("reference_radius / 2]", "0 mm]"));
+    let python = reader();
+    for (part, share) in [("gear", 1.0), ("tooth", 24.0), ("space", 24.0)] {
+        let run = flank(&["solve", &spec, "--solid", part, "--step", "--out", to, "--json"]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let built: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let file = out.join("spur_gear_body.step");
+        let written = std::fs::read_to_string(&file).expect("written");
+        let is_empty = |line: &str| {
+            ["CIRCLE(", "CYLINDRICAL_SURFACE("].iter().any(|kind| line.contains(kind)) && line.contains(",0.)")
+        };
+        assert!(!written.lines().any(is_empty), "{part}: no radius of nothing");
+        let Some(python) = &python else { continue };
+        let run = Command::new(python)
+            .args([top().join("crates/cli/tests/readers/solid.py"), file])
+            .output()
+            .expect("it has just been run");
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let count = |key: &str| found[key].as_i64().expect("a count");
+        assert_eq!((count("solids"), count("shapes"), count("open_edges")), (1, 1, 0), "{part}: {found}");
+        assert_eq!(count("vertices") - count("edges") + count("faces"), 2, "{part}: {found}");
+        let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
+        let off = number(&found, "volume") * share / number(&built["solids"][0], "volume_mm3") - 1.0;
+        // OpenCASCADE itself integrates to some 1e-7
+        assert!(off.abs() < 3e-7, "{part} {off:e}: {found}");
+    }
+}
+
 #[test]
 fn the_head_and_the_report_say_how_far_the_faces_are_off() {
     let out = folder("step-told");

@@ -76,15 +76,17 @@ pub use newton::least_squares::{
 pub use newton::scalar::solve;
 pub use roots::{Doubt, Isolated, MOST_BOXES, Roots, Undecided, all_roots};
 pub use solid::arrangement::Arrangement;
+pub use solid::ball::{BallFault, BallGauge};
 pub use solid::blank::Blank;
 pub use solid::body::{Body, BodyFault};
 pub use solid::bricks::counts::BrickCounts;
 pub use solid::bricks::quality::BrickQuality;
 pub use solid::bricks::{BrickFaces, BrickMesh, BrickOrder, BrickSide};
 pub use solid::chart::Chart;
-pub use solid::gauge::{BallGauge, Chord, Span, Thickness};
+pub use solid::gauge::{Chord, Span, Thickness};
 pub use solid::mass::MassProperties;
 pub use solid::mesh::{BodyPart, ClosedMesh};
+pub use solid::parts::SpacePart;
 pub use solid::section::Fineness;
 pub use solid::sheets::{BodySheet, SheetFace};
 pub use surface::bands::Band;

@@ -10,9 +10,9 @@ use super::{EvaluatorArguments, JobArguments, folder};
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
-A tooth goes from the middle of a space to the middle of the next. Sets of nodes and of faces: FLANK_, FILLET_ and ROOT_ with the
+A tooth goes from the middle of a space to the middle of the next. Sets of nodes and of faces: FLANK_, FILLET_, ROOT_ and CHAMFER_ with the
 surface's name (and _T2 of the second tooth where there are several), the segments of the blank by their names, SIDE_1 and SIDE_2, whose
-nodes are the same turned by the meshed teeth.
+nodes are the same turned by the meshed teeth, or of a rack shifted by them.
 
 Examples:
   flank mesh specs/bevel/pinion_19x62.chain

@@ -68,11 +68,12 @@ impl Shell<'_, '_, '_> {
             let place = self.part.placement(on_axis(from[0]), up, reference)?;
             return Ok((self.part.add(&format!("CYLINDRICAL_SURFACE('',#{place},{})", real(from[1])))?, dz < 0.0));
         }
-        // the radius of a cone grows along its axis
+        // the radius of a cone grows along its axis, and is not that of its apex
         let axis = [0.0, 0.0, (drho / dz).signum()];
-        let place = self.part.placement(on_axis(from[0]), axis, reference)?;
+        let wide = if drho > 0.0 { to } else { from };
+        let place = self.part.placement(on_axis(wide[0]), axis, reference)?;
         let half = (drho / dz).abs().atan();
-        let cone = format!("CONICAL_SURFACE('',#{place},{},{})", real(from[1]), real(half));
+        let cone = format!("CONICAL_SURFACE('',#{place},{},{})", real(wide[1]), real(half));
         Ok((self.part.add(&cone)?, dz < 0.0))
     }
 

@@ -17,8 +17,9 @@ struct Cut {
 }
 
 impl Shell<'_, '_, '_> {
-    /// The edges of a side, from the first row (0) or the last one (1) inwards.
-    fn cut(&mut self, side: &GearSide, which: usize) -> Result<Cut, WriteError> {
+    /// The edges of a side, from the first row or, with the first side, the last one inwards. What both have on the axis is there once.
+    fn cut(&mut self, side: &GearSide, first: Option<&Cut>) -> Result<Cut, WriteError> {
+        let which = usize::from(first.is_some());
         let row = if which == 0 { self.rows[0] } else { self.rows[self.rows.len() - 1] };
         let (run, ways) = (self.body.run, self.ways[which]);
         let [begin, _, end] = &self.body.ends;
@@ -26,6 +27,10 @@ impl Shell<'_, '_, '_> {
         let places: Vec<[f64; 2]> = self.body.rest.iter().map(|segment| segment.from).chain([begin.from]).collect();
         let mut corners = Vec::new();
         for (k, place) in places.iter().enumerate() {
+            if let Some(first) = first.filter(|_| run.is_on_axis(*place)) {
+                corners.push(first.corners[k]);
+                continue;
+            }
             let point = match side {
                 GearSide::Bent { rest, .. } if k < count => rest[k][0],
                 _ => run.at(*place, ways[usize::from(k == 0 && count > 0)]),
@@ -35,6 +40,10 @@ impl Shell<'_, '_, '_> {
         }
         let mut lines = Vec::new();
         for (k, segment) in self.body.rest.iter().enumerate() {
+            if let Some(first) = first.filter(|_| run.is_along_axis(segment)) {
+                lines.push(first.rest[k]);
+                continue;
+            }
             let vertices = [corners[k], corners[k + 1]];
             lines.push(match side {
                 GearSide::Flat => self.seam(segment, vertices, ways[0])?,
@@ -64,20 +73,25 @@ impl Shell<'_, '_, '_> {
 
     /// The ends, the rest of the outline and the sides of a part.
     pub(super) fn cut_faces(&mut self, sides: &[GearSide; 2]) -> Result<Vec<usize>, WriteError> {
-        let cuts = [self.cut(&sides[0], 0)?, self.cut(&sides[1], 1)?];
+        let first = self.cut(&sides[0], None)?;
+        let last = self.cut(&sides[1], Some(&first))?;
+        let cuts = [first, last];
         let [begin, _, end] = self.body.ends.clone();
         let places: Vec<[f64; 2]> = self.body.rest.iter().map(|segment| segment.from).chain([begin.from]).collect();
         let mut across = Vec::new();
         for (k, place) in places.iter().enumerate() {
-            across.push(self.path([cuts[0].corners[k], cuts[1].corners[k]], *place)?);
+            let is_line = !self.body.run.is_on_axis(*place);
+            let path = is_line.then(|| self.path([cuts[0].corners[k], cuts[1].corners[k]], *place));
+            across.push(path.transpose()?);
         }
+        let across = |k: usize, is_forward: bool| across[k].map(|edge| (edge, is_forward));
         let columns = |end: usize| self.columns.iter().map(move |both| both[end]);
         let at_begin = columns(0).map(|edge| (edge, true));
-        let below = [(cuts[1].ends[0], true), (across[places.len() - 1], false), (cuts[0].ends[0], false)];
-        let begin_loop: Vec<(Edge, bool)> = at_begin.chain(below).collect();
+        let below = [Some((cuts[1].ends[0], true)), across(places.len() - 1, false), Some((cuts[0].ends[0], false))];
+        let begin_loop: Vec<(Edge, bool)> = at_begin.chain(below.into_iter().flatten()).collect();
         let at_end: Vec<(Edge, bool)> = columns(1).map(|edge| (edge, false)).collect();
-        let below = [(cuts[0].ends[1], true), (across[0], true), (cuts[1].ends[1], false)];
-        let end_loop: Vec<(Edge, bool)> = below.into_iter().chain(at_end.into_iter().rev()).collect();
+        let below = [Some((cuts[0].ends[1], true)), across(0, true), Some((cuts[1].ends[1], false))];
+        let end_loop: Vec<(Edge, bool)> = below.into_iter().flatten().chain(at_end.into_iter().rev()).collect();
         let seam = self.seam_of(0);
         let mut faces = Vec::new();
         for (segment, edges) in [(&begin, begin_loop), (&end, end_loop)] {
@@ -85,9 +99,13 @@ impl Shell<'_, '_, '_> {
             faces.push(self.face(&segment.name, &[edges], surface)?);
         }
         for (k, segment) in self.body.rest.iter().enumerate() {
+            if self.body.run.is_along_axis(segment) {
+                continue;
+            }
             let surface = self.surface(segment, seam)?;
-            let edges = [(cuts[0].rest[k], true), (across[k + 1], true), (cuts[1].rest[k], false), (across[k], false)];
-            faces.push(self.face(&segment.name, &[edges.to_vec()], surface)?);
+            let [down, up] = [(cuts[0].rest[k], true), (cuts[1].rest[k], false)];
+            let edges = [Some(down), across(k + 1, true), Some(up), across(k, false)];
+            faces.push(self.face(&segment.name, &[edges.into_iter().flatten().collect()], surface)?);
         }
         for (which, side) in sides.iter().enumerate() {
             let row = if which == 0 { self.rows[0] } else { self.rows[self.rows.len() - 1] };

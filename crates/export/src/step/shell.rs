@@ -222,7 +222,9 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
         faces.push(self.end_face(&begin, 0)?);
         faces.push(self.end_face(&end, 1)?);
         for (k, segment) in self.body.rest.iter().enumerate() {
-            faces.push(self.rest_face(segment, k)?);
+            if !self.body.run.is_along_axis(segment) {
+                faces.push(self.rest_face(segment, k)?);
+            }
         }
         Ok(faces)
     }
@@ -237,7 +239,7 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
         first[0] + 0.5 * span + PI
     }
 
-    /// A face within loops that run anticlockwise about its outward normal.
+    /// A face within loops that run anticlockwise about its outward normal; one around a place on the axis is none.
     pub(super) fn face(
         &mut self,
         name: &str,
@@ -246,7 +248,7 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
     ) -> Result<usize, WriteError> {
         let letter = |is: bool| if is { ".T." } else { ".F." };
         let mut bounds = Vec::new();
-        for (k, edges) in loops.iter().enumerate() {
+        for (k, edges) in loops.iter().filter(|edges| !edges.is_empty()).enumerate() {
             let mut oriented = Vec::new();
             for (Edge(edge), is_forward) in edges {
                 oriented.push(self.part.add(&format!("ORIENTED_EDGE('',*,*,#{edge},{})", letter(*is_forward)))?);
@@ -258,7 +260,7 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
         self.part.add(&format!("ADVANCED_FACE({},{},#{surface},{})", text(name), numbers(&bounds), letter(sense)))
     }
 
-    /// The circles of the rest of the outline. Seams of the rest lie at the angle of the end's first vertex, that of a beginning which is
+    /// The circles of the rest of the outline, on the axis a vertex alone. Seams of the rest lie at the angle of the end's first vertex, that of a beginning which is
     /// no plane at its own.
     fn rings(&mut self) -> Result<(), WriteError> {
         let begin = &self.body.ends[0];
@@ -276,7 +278,8 @@ impl<'p, 'w, 'b> Shell<'p, 'w, 'b> {
                 vertices.push((*angle, self.vertex(point)?));
             }
             let mut edges = Vec::new();
-            for i in 0..vertices.len() {
+            let count = if self.body.run.is_on_axis(*place) { 0 } else { vertices.len() };
+            for i in 0..count {
                 edges.push(self.path([vertices[i].1, vertices[(i + 1) % vertices.len()].1], *place)?);
             }
             self.rings.push(Ring { vertices, edges });

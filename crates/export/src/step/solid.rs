@@ -183,6 +183,8 @@ struct BodyProduct {
 
 /// What readers take for one point at the least, mm.
 pub(super) const LEAST_UNCERTAINTY: f64 = 1e-7;
+/// Places nearer to the axis lie on it, mm: rounding of arcs that end there.
+const ON_AXIS: f64 = 1e-9;
 
 impl DataSection<'_> {
     fn product_of_body(&mut self, body: &GearBody) -> Result<BodyProduct, WriteError> {
@@ -251,6 +253,16 @@ impl GearRun {
             }
             GearRun::Straight { pitch } => [x, y + pitch * f64::from(spaces), z],
         }
+    }
+
+    /// Whether a place of the outline lies on the axis: it passes over nothing there.
+    pub(super) fn is_on_axis(self, [_, rho]: [f64; 2]) -> bool {
+        matches!(self, GearRun::Round { .. }) && rho.abs() < ON_AXIS
+    }
+
+    /// Whether a segment of the outline runs along the axis: that bounds nothing.
+    pub(super) fn is_along_axis(self, segment: &TurnedSegment) -> bool {
+        segment.center.is_none() && self.is_on_axis(segment.from) && self.is_on_axis(segment.to)
     }
 
     pub(super) fn way(self, [x, y, _]: Vector) -> f64 {

@@ -271,14 +271,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             let way = "what is told of the error there is too little; more positions of the roll and more points of both samples help".to_string();
             told.push(NotDone::new(NotDoneKind::NotSolved, first, message).with(vec![way]));
         }
-        let least = patterns.iter().filter_map(|map| map.pattern.least_um).reduce(f64::min);
-        if let Some(least) = least.filter(|least| *least < 1e3 * REACHES_IN) {
-            let message = format!(
-                "contact {name}: {first} and {second} reach into each other by {} um where they should touch",
-                units::scientific(-least, 2)
-            );
-            told.push(NotDone::new(NotDoneKind::Penetration, first, message));
-        }
+        told.extend(penetration(self.members, patterns));
         told
     }
 
@@ -374,4 +367,17 @@ pub(crate) fn backlash(
         }));
     }
     Ok(None)
+}
+
+/// Whether the flanks reach into each other where they should touch.
+pub(crate) fn penetration(members: &Members<'_, '_>, patterns: &[GapMap]) -> Option<NotDone> {
+    let [first, second] = members.surfaces.map(|surface| &surface.name);
+    let least = patterns.iter().filter_map(|map| map.pattern.least_um).reduce(f64::min);
+    let least = least.filter(|least| *least < 1e3 * REACHES_IN)?;
+    let message = format!(
+        "contact {}: {first} and {second} reach into each other by {} where they should touch",
+        members.contact.name,
+        units::length(-1e-3 * least)
+    );
+    Some(NotDone::new(NotDoneKind::Penetration, first, message))
 }

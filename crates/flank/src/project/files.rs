@@ -86,6 +86,13 @@ impl<'a> Folder<'a> {
             .try_for_each(|(name, faces)| self.write(&format!("{name}.step"), |out| write_step(header, faces, out)))
     }
 
+    /// What there is to say of files of earlier runs under a name that is not written now.
+    pub(crate) fn older<'e>(&self, name: &str, extensions: impl Iterator<Item = &'e str>) -> Vec<String> {
+        let older =
+            extensions.map(|extension| self.path.join(format!("{name}.{extension}"))).filter(|path| path.exists());
+        older.map(|path| format!("`{}` is there from an earlier run", shown_path(&path))).collect()
+    }
+
     /// The closed surface of a body.
     pub(crate) fn body_stl(&mut self, name: &str, header: &Header, body: &BodyMesh<'_>) -> Result<(), Failure> {
         self.write(&format!("{name}.stl"), |out| write_body_stl(header, body, out))

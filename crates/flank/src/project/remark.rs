@@ -15,7 +15,7 @@ pub struct Message<Kind> {
     pub kind: Kind,
     /// The surface, axis, setting, machine or job that it is about, if it is about one.
     pub of: Option<String>,
-    /// Where the spec names that, for surfaces.
+    /// Where the spec names that, for surfaces and solids.
     pub place: Option<Place>,
     /// In words, in one line.
     pub message: String,
@@ -147,6 +147,12 @@ impl<Kind> Message<Kind> {
     /// With lines below the message.
     pub(crate) fn with(self, details: Vec<String>) -> Message<Kind> {
         Message { details, ..self }
+    }
+
+    /// With more lines below the message.
+    pub(crate) fn with_more(mut self, details: Vec<String>) -> Message<Kind> {
+        self.details.extend(details);
+        self
     }
 
     /// Its message, then its details.

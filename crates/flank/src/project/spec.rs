@@ -101,7 +101,7 @@ impl Origin {
         Origin { hash, files, sources: compilation.sources.clone() }
     }
 
-    /// Messages about surfaces of some jobs, with the places where these are named: `concave`, or with its job `pinion.concave`.
+    /// Messages about surfaces and solids of some jobs, with the places where these are named: `concave`, or with its job `pinion.concave`.
     pub(crate) fn located<Kind>(&self, jobs: &[&Job<'_>], mut messages: Vec<Message<Kind>>) -> Vec<Message<Kind>> {
         let surfaces = || jobs.iter().flat_map(|job| job.surfaces.iter().map(move |surface| (&job.name, surface)));
         for message in &mut messages {
@@ -109,8 +109,10 @@ impl Origin {
             let is_meant = |(job, surface): &(&String, &GeneratedSurface<'_>)| {
                 surface.name == *name || format!("{job}.{}", surface.name) == *name
             };
-            let found = surfaces().find(is_meant);
-            message.place = found.map(|(_, surface)| Place::of_span(&self.sources, surface.written));
+            let surface = surfaces().find(is_meant).map(|(_, surface)| surface.written);
+            let solid = || jobs.iter().flat_map(|job| &job.solids).find(|solid| solid.name == *name);
+            let found = surface.or_else(|| solid().map(|solid| solid.written));
+            message.place = found.map(|written| Place::of_span(&self.sources, written));
         }
         messages
     }

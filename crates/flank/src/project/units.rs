@@ -54,6 +54,22 @@ pub(crate) fn scientific(value: f64, decimals: usize) -> String {
     if value == 0.0 { "0".to_string() } else { format!("{value:.decimals$e}") }
 }
 
+/// A length of any size, for people: in mm, or in um where it is small.
+pub(crate) fn length(mm: f64) -> String {
+    match mm.abs() {
+        size if size >= 1e-3 => format!("{} mm", fixed(mm, 4)),
+        size if size >= 1e-6 => format!("{} um", fixed(1e3 * mm, 4)),
+        0.0 => "0 mm".to_string(),
+        _ => format!("{:.1e} um", 1e3 * mm),
+    }
+}
+
+/// How far something is off, in um: by three decimals unless these say nothing of it.
+pub(crate) fn off(mm: f64) -> String {
+    let um = 1e3 * mm;
+    if um == 0.0 || um >= 1e-2 { format!("{um:.3} um") } else { format!("{um:.1e} um") }
+}
+
 /// A value in its unit, with some decimals.
 pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
     format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()

@@ -11,7 +11,7 @@ use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
 use crate::solve::body::gauges::measured;
 use crate::solve::body::result::GaugeNumbers;
-use crate::solve::body::space;
+use crate::solve::body::{refusal, space};
 
 /// Spans that are listed about the one that touches nearest to the middle of the flanks.
 const SPANS: usize = 3;
@@ -29,8 +29,7 @@ pub(super) fn gears<'j>(subject: &Subject<'j, '_>) -> Result<Vec<Gear<'j>>, Fail
     let gear = |solid: &'j Solid| {
         let measured = match space::body(subject.job(), solid, subject.session()) {
             Ok(made) => Ok((made.body.mass_properties().volume, measured(&made.body, None))),
-            Err(Failure::Input(reason)) => Err(reason),
-            Err(other) => return Err(other),
+            Err(failure) => Err(refusal::no_body(solid, failure)?.message),
         };
         Ok(Gear { solid, measured })
     };

@@ -17,7 +17,7 @@ use crate::convert::Conversion;
 use crate::project::failure::Failure;
 use crate::project::requests::{ContactRequest, JobSelection, Onto};
 use crate::project::spec::Origin;
-use crate::solve::body::space;
+use crate::solve::body::{refusal, space};
 use crate::testing::points::Tested;
 
 /// Positions of a pitch at which contacts are looked at, and of a motion at which other machines are.
@@ -125,8 +125,7 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
             let Tested { job, session, .. } = *self.tested;
             let found = match space::body(job, &job.solids[index], session) {
                 Ok(space) => Ok(Arc::new(space.body)),
-                Err(Failure::Input(reason)) => Err(reason),
-                Err(other) => return Err(other),
+                Err(failure) => Err(refusal::no_body(&job.solids[index], failure)?.message),
             };
             self.bodies.borrow_mut().insert(index, found);
         }
@@ -161,7 +160,7 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
                 }
                 SolidNumber::OverBalls(ball) => {
                     let found = body.ball(ball).map(|found| found.over_balls);
-                    found.ok_or_else(|| format!("no ball of {ball} mm touches both flanks of {name}"))?
+                    found.map_err(|_| format!("no ball of {ball} mm touches both flanks of {name} and nothing else"))?
                 }
             })
         }))

@@ -6,10 +6,14 @@ use crate::solid::chart::Chart;
 
 /// Rows of each chart, and columns, at which a body is looked at before it is one.
 const LOOKS: usize = 9;
+/// The same where it is measured how far it goes through its blank.
+const FINE_LOOKS: usize = 65;
 /// Rows of a land's chart: enough for half a turn.
 const LAND_ROWS: usize = 17;
 /// How far a space may reach beyond its blank, and how thin a wall is none, mm: rounding of solved points.
 const ON_BLANK: f64 = 1e-6;
+/// Places nearer to the axis lie on it, mm: rounding of arcs that end there.
+pub(crate) const ON_AXIS: f64 = 1e-9;
 
 /// A body of revolution with tooth spaces about its z axis, or a bar with tooth spaces along y.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,11 +48,18 @@ pub enum BodyFault {
         /// The distance from the axis, mm.
         rho: f64,
     },
+    /// The line across a space crosses itself.
+    Crossed {
+        /// The charts that cross each other, in the order that they were given in.
+        charts: [usize; 2],
+        /// Where, `[z, rho]`, mm.
+        place: [f64; 2],
+    },
     /// A space goes through the blank.
     Through {
         /// The segment of the outline, as an index.
         segment: usize,
-        /// How far beyond it, mm.
+        /// How far beyond it at the most, mm.
         by: f64,
     },
     /// A space reaches the rest of the blank, and leaves no wall there.
@@ -69,7 +80,7 @@ impl Body {
     /// If there are neither the charts of one space nor those of all, or if the ends of the blank do not follow each other.
     ///
     /// # Errors
-    /// If teeth are pointed below the tip, spaces overlap, or a space goes through the blank or leaves no wall of it.
+    /// If teeth are pointed below the tip, spaces overlap or cross themselves, or a space goes through the blank or leaves no wall of it.
     pub fn new(
         blank: Blank,
         (arrangement, teeth): (Arrangement, u32),
@@ -139,6 +150,7 @@ impl Body {
         for tooth in 0..self.spaces.len() {
             let [own, next] = self.tooth_lines(tooth, &across, &shares);
             self.check_tips([&own, &next], &shares)?;
+            self.check_crossings(&own)?;
             for (line, next) in own.iter().zip(&next) {
                 let last = line.len() - 1;
                 for i in 1..line.len() / 2 {
@@ -148,8 +160,8 @@ impl Body {
                     }
                 }
                 for place in line.iter().map(|[z, rho, _]| [*z, *rho]) {
-                    if let Some((segment, by)) = self.blank.outline.beyond(place).filter(|(_, by)| *by > ON_BLANK) {
-                        return Err(BodyFault::Through { segment, by });
+                    if self.beyond(place).is_some() {
+                        return Err(self.through(tooth));
                     }
                     if let Some(segment) = self.blank.rest_at(place, ON_BLANK) {
                         return Err(BodyFault::NoWall { segment, place });
@@ -158,6 +170,43 @@ impl Body {
             }
         }
         Ok(self)
+    }
+
+    /// How far a place `[z, rho]` lies outside the blank, and beyond which segment.
+    fn beyond(&self, place: [f64; 2]) -> Option<(usize, f64)> {
+        self.blank.outline.beyond(place).filter(|(_, by)| *by > ON_BLANK)
+    }
+
+    /// Where a space goes through the blank the farthest.
+    fn through(&self, space: usize) -> BodyFault {
+        let shares: Vec<f64> = (0..FINE_LOOKS).map(|k| k as f64 / (FINE_LOOKS - 1) as f64).collect();
+        let lines = self.lines_of(space, &vec![shares.clone(); self.charts().len()], &shares);
+        let places = lines.iter().flatten().filter_map(|[z, rho, _]| self.beyond([*z, *rho]));
+        let farthest = places.max_by(|a, b| a.1.total_cmp(&b.1)).expect("it goes through at one of these places");
+        BodyFault::Through { segment: farthest.0, by: farthest.1 }
+    }
+
+    /// Each line across a space bounds it only if it does not cross itself.
+    fn check_crossings(&self, lines: &[Vec<Polar>]) -> Result<(), BodyFault> {
+        for line in lines {
+            let [tip, ground] = [line[0], line[line.len() / 2]];
+            let down = [ground[0] - tip[0], ground[1] - tip[1]];
+            let depth = down[0].hypot(down[1]);
+            let flat = |[z, rho, way]: Polar| {
+                let depth = ((z - tip[0]) * down[0] + (rho - tip[1]) * down[1]) / depth;
+                [depth, way * self.arrangement.arc(tip[1])]
+            };
+            let flat: Vec<[f64; 2]> = line.iter().map(|place| flat(*place)).collect();
+            if let Some(([i, j], share)) = crossing(&flat) {
+                let charts = [i, j].map(|step| {
+                    let chart = step / (LOOKS - 1);
+                    if self.is_reversed { self.charts().len() - 1 - chart } else { chart }
+                });
+                let place = [0, 1].map(|k| (1.0 - share) * line[i][k] + share * line[i + 1][k]);
+                return Err(BodyFault::Crossed { charts, place });
+            }
+        }
+        Ok(())
     }
 
     fn check_tips(&self, [own, next]: [&[Vec<Polar>]; 2], shares: &[f64]) -> Result<(), BodyFault> {
@@ -181,6 +230,12 @@ impl Body {
     /// Whether teeth end in an edge, and not in a land of the blank.
     pub fn has_edge(&self) -> bool {
         self.has_edge
+    }
+
+    /// Whether its blank goes as far as the axis, as that of a shaft does.
+    pub fn reaches_axis(&self) -> bool {
+        let is_on_axis = |[_, rho]: [f64; 2]| rho.abs() < ON_AXIS;
+        self.arrangement.is_closed() && self.blank.outline.segments().iter().any(|segment| is_on_axis(segment.from))
     }
 
     /// How the spaces follow each other.
@@ -304,6 +359,17 @@ impl Body {
         };
         (0..columns).map(&mut line).collect()
     }
+}
+
+/// The first two steps of a line that cross each other, and where on the first one, as a share.
+fn crossing(line: &[[f64; 2]]) -> Option<([usize; 2], f64)> {
+    let side = |[p, q]: [[f64; 2]; 2], at: [f64; 2]| (q[0] - p[0]) * (at[1] - p[1]) - (q[1] - p[1]) * (at[0] - p[0]);
+    let step = |k: usize| [line[k], line[k + 1]];
+    let parts = |of: usize, other: usize| step(other).map(|at| side(step(of), at)).into_iter().product::<f64>() < 0.0;
+    let later = |i: usize| (i + 2..line.len() - 1).map(move |j| [i, j]);
+    let [i, j] = (0..line.len() - 1).flat_map(later).find(|[i, j]| parts(*i, *j) && parts(*j, *i))?;
+    let [from, to] = step(i).map(|at| side(step(j), at));
+    Some(([i, j], from / (from - to)))
 }
 
 /// A place farther on along the spaces.

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, Vector3};
 
-use crate::solid::arrangement::{Arrangement, Polar};
+use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
 use crate::solid::chart::Chart;
 
@@ -13,16 +13,13 @@ const MOST_STEPS: usize = 30;
 /// The last step, mm and shares, and what it may leave of the equations, mm: where a gauge may slide, no more than polynomials through exact
 /// points have of the surfaces' normals.
 const LAST_STEP: f64 = 1e-9;
-const TOUCHES: f64 = 1e-6;
+pub(crate) const TOUCHES: f64 = 1e-6;
 /// A circle this near to the end of a flank goes through it, mm: above what charts are off, so that both flanks reach the tip.
 const ENDS: f64 = 1e-7;
 /// Step of the differences that Newton's method takes for slopes, in shares.
 const STEP: f64 = 1e-6;
 /// The tip of a face gear is this flat: its slope against a plane across the axis.
 const FLAT: f64 = 0.1;
-/// Cosine between the normals of the ground and of a chart that runs out into it: a flank stands on it by more than 30 degrees, steeper than any
-/// pressure angle leaves it.
-const RUNS_OUT: f64 = 0.87;
 /// Singular values below this share of the largest are directions in which a gauge may slide.
 const SLIDES: f64 = 1e-5;
 
@@ -52,10 +49,10 @@ pub struct Chord {
 type Facing = [(usize, f64, f64); 2];
 
 /// The shortest way between flank lines.
-struct Shortest {
+pub(crate) struct Shortest {
     ends: [Vector3<f64>; 2],
     /// How far along the first line it begins beyond the middle, and the second one before, as a share.
-    shift: f64,
+    pub(crate) shift: f64,
 }
 
 /// The distance of two parallel planes that touch the outer flanks of some teeth.
@@ -66,19 +63,6 @@ pub struct Span {
     /// mm
     pub width: f64,
     /// Where they touch, from the axis, mm.
-    pub rho: [f64; 2],
-}
-
-/// A ball in a space, touching both flanks in the middle of the teeth's length.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct BallGauge {
-    /// mm
-    pub diameter: f64,
-    /// Of the ball's centre, from the axis, mm.
-    pub centre_rho: f64,
-    /// Over two balls in opposite spaces, or between them in an internal gear, mm.
-    pub over_balls: f64,
-    /// Where it touches, from the axis, mm.
     pub rho: [f64; 2],
 }
 
@@ -98,7 +82,7 @@ impl Body {
     }
 
     /// By what the depth of teeth is measured, of a place `[z, rho, …]`.
-    fn depth(&self, place: Polar) -> f64 {
+    pub(crate) fn depth(&self, place: Polar) -> f64 {
         if self.is_face_gear() { place[0] } else { place[1] }
     }
 
@@ -128,34 +112,6 @@ impl Body {
             .map(|(k, share)| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))))
     }
 
-    /// The charts that are the flanks: on each side the deepest one above the fillet. A fillet runs out into the ground, and may be deeper than
-    /// what it leaves of a flank that is cut under; a chamfer above the flank is not. Where all run out so, the one at the tip.
-    fn flanks(&self) -> [usize; 2] {
-        let last = self.charts().len() - 1;
-        let ground = self.normal_at(self.charts().len() / 2, if last.is_multiple_of(2) { 0.5 } else { 0.0 });
-        let flank = |side: Vec<usize>, inner: f64| {
-            let above = side.iter().filter(|k| self.normal_at(**k, inner).dot(&ground) < RUNS_OUT);
-            above.max_by(|a, b| self.height(**a).total_cmp(&self.height(**b))).copied().unwrap_or(side[0])
-        };
-        [flank((0..=last / 2).collect(), 1.0), flank((last.div_ceil(2)..=last).rev().collect(), 0.0)]
-    }
-
-    /// How much of the teeth's depth a chart has, half-way along, mm.
-    fn height(&self, k: usize) -> f64 {
-        let [from, to] = [0.0, 1.0].map(|share| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))));
-        (to - from).abs()
-    }
-
-    /// The normal at a share across a chart, half-way along: along the axis, away from it, and around it.
-    fn normal_at(&self, k: usize, share: f64) -> Vector3<f64> {
-        let (at, normal) = touched(&self.charts()[k], [share, 0.5]);
-        let out = match self.arrangement {
-            Arrangement::Round => (normal.x * at.x + normal.y * at.y) / at.x.hypot(at.y),
-            Arrangement::Straight { .. } => normal.x,
-        };
-        Vector3::new(normal.z, out, self.arrangement.along(at.into(), normal))
-    }
-
     /// The tooth's thickness at a distance from the axis (of a face gear at a z), half-way along; `None` where a flank does not reach there.
     pub fn thickness(&self, depth: f64) -> Option<Thickness> {
         let share = |k: usize| Some((k, self.on_flank(k, depth)?));
@@ -183,7 +139,7 @@ impl Body {
     }
 
     /// The shortest way across the first space, from the lower flank to the upper one.
-    fn across_space(&self, [low, high]: [Option<(usize, f64, f64)>; 2]) -> Option<Shortest> {
+    pub(crate) fn across_space(&self, [low, high]: [Option<(usize, f64, f64)>; 2]) -> Option<Shortest> {
         let facing = [low?, high?];
         let [[_, rho, from], [_, _, to]] =
             facing.map(|(k, share, _)| self.arrangement.place(self.charts()[k].at([share, 0.5])));
@@ -260,54 +216,20 @@ impl Body {
             rho: [rho(near.at([x[0], x[1]])), rho(far.at([x[2], x[3]]))],
         })
     }
-
-    /// A ball that touches both flanks, its centre half-way along; `None` where none of the size does within their ends, and of a single space,
-    /// which has none opposite.
-    pub fn ball(&self, diameter: f64) -> Option<BallGauge> {
-        if self.teeth() < 2 {
-            return None;
-        }
-        let flanks = self.flanks();
-        let shift = self.across_space(flanks.map(|k| Some((k, 0.5, 0.0)))).map_or(0.0, |way| way.shift);
-        let [low, high] = flanks.map(|k| &self.charts()[k]);
-        let z = low.at([0.5; 2])[2];
-        let starts = [touched(low, [0.5, 0.5 + shift]), touched(high, [0.5, 0.5 - shift])];
-        let start = 0.5 * (starts[0].0 + starts[1].0 + 0.5 * diameter * (starts[0].1 + starts[1].1));
-        let residual = |x: &[f64]| {
-            let centre = Vector3::new(x[4], x[5], z);
-            let off = |chart: &Chart, shares: [f64; 2]| {
-                let (p, n) = touched(chart, shares);
-                p + 0.5 * diameter * n - centre
-            };
-            let (a, b) = (off(low, [x[0], x[1]]), off(high, [x[2], x[3]]));
-            vec![a.x, a.y, a.z, b.x, b.y, b.z]
-        };
-        let x = solved(residual, vec![0.5, 0.5 + shift, 0.5, 0.5 - shift, start.x, start.y])?;
-        let centre_rho = x[4].hypot(x[5]);
-        // of an odd number of spaces none is opposite another
-        let across = if self.teeth().is_multiple_of(2) { 1.0 } else { (0.25 * self.pitch()).cos() };
-        let side = if self.is_external() { 1.0 } else { -1.0 };
-        Some(BallGauge {
-            diameter,
-            centre_rho,
-            over_balls: 2.0 * centre_rho * across + side * diameter,
-            rho: [rho(low.at([x[0], x[1]])), rho(high.at([x[2], x[3]]))],
-        })
-    }
 }
 
-fn rho([x, y, _]: [f64; 3]) -> f64 {
+pub(crate) fn rho([x, y, _]: [f64; 3]) -> f64 {
     x.hypot(y)
 }
 
 /// A point of a chart, and the normal there out of the body.
-fn touched(chart: &Chart, shares: [f64; 2]) -> (Vector3<f64>, Vector3<f64>) {
+pub(crate) fn touched(chart: &Chart, shares: [f64; 2]) -> (Vector3<f64>, Vector3<f64>) {
     let [at, by_u, by_w] = chart.frame(shares).map(Vector3::from);
     (at, by_w.cross(&by_u).normalize())
 }
 
 /// Newton's method with steps of least length: where a gauge may slide, it stays near. The first four are shares, which stay on their charts.
-fn solved(residual: impl Fn(&[f64]) -> Vec<f64>, mut x: Vec<f64>) -> Option<Vec<f64>> {
+pub(crate) fn solved(residual: impl Fn(&[f64]) -> Vec<f64>, mut x: Vec<f64>) -> Option<Vec<f64>> {
     for _ in 0..MOST_STEPS {
         let value = residual(&x);
         let mut jacobian = DMatrix::zeros(value.len(), x.len());

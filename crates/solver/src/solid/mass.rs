@@ -47,6 +47,12 @@ impl Body {
                 sums.iter_mut().zip(moved).for_each(|(sum, part)| *sum -= part);
             }
         }
+        if !self.arrangement.is_closed() {
+            // a bar begins in the middle of its first space: the half before that is open behind its last tooth
+            let half = self.of_first_half();
+            let behind = moved(&half, self.arrangement, f64::from(self.teeth()) * self.pitch());
+            sums.iter_mut().zip(half.iter().zip(behind)).for_each(|(sum, (before, behind))| *sum += before - behind);
+        }
         let [volume, x, y, z, xx, yy, zz, xy, xz, yz] = sums;
         let centre = [x, y, z].map(|moment| moment / volume);
         let [a, b, c] = centre;
@@ -99,6 +105,30 @@ impl Body {
         // the charts' normals point out of the space or into it, all of them
         let sign = sums[0].signum();
         (sums.map(|sum| sign * sum), area)
+    }
+
+    /// The moments of what of a bar's first space lies before the plane through its middle.
+    fn of_first_half(&self) -> Moments {
+        let nodes = gauss_legendre(NODES);
+        let [a, b] = self.side();
+        let count = self.charts().len();
+        let whole = self.charts()[..count / 2].iter().map(|chart| (chart, 1.0));
+        let parted = (!count.is_multiple_of(2)).then(|| (&self.charts()[count / 2], 0.5));
+        let mut sums = [0.0; 10];
+        for (chart, share) in whole.chain(parted) {
+            for ((across, by_across), (along, by_along)) in
+                nodes.iter().flat_map(|across| nodes.iter().map(move |along| (across, along)))
+            {
+                let [at, by_u, by_w] = chart.frame([share * across, *along]);
+                let normal = share * by_across * by_along * Vector3::from(by_u).cross(&Vector3::from(by_w));
+                let [z, rho, y] = self.arrangement.place(at);
+                let [to, from] = [y, a + b * z].map(|way| integrals_along(self.arrangement, [z, rho, way]));
+                let around = self.arrangement.along(at, normal);
+                sums.iter_mut().zip(to.iter().zip(from)).for_each(|(sum, (to, from))| *sum += around * (to - from));
+            }
+        }
+        let sign = sums[0].signum();
+        sums.map(|sum| sign * sum)
     }
 
     /// Where teeth end in an edge: what parts a space from those beside it between the edges and the tip of the blank, and in which sense.

@@ -1,12 +1,12 @@
 //! The closed surface of a body as triangles that share their corners.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::Vector3;
 
 use crate::contact::OutlineSegment;
 use crate::solid::arrangement::{Arrangement, Polar};
-use crate::solid::body::{Body, shifted};
+use crate::solid::body::{Body, ON_AXIS, shifted};
 use crate::solid::section::{Fineness, Layout};
 
 /// Cells of a chart in one direction at the most.
@@ -36,6 +36,8 @@ pub struct ClosedMesh {
 
 /// The cells of a part in a section: each with its tooth, and the nodes of all teeth numbered one after the other.
 pub(crate) struct Cells {
+    /// Whether the first tooth is the one before the first space, and not the one behind it.
+    is_before: bool,
     /// Nodes of one tooth.
     nodes: usize,
     /// Teeth that the nodes are of.
@@ -73,7 +75,7 @@ impl Cells {
             let wanted = own.iter().filter(move |cell| is_wanted(tooth, cell));
             wanted.map(move |cell| cell.map(|node| number(tooth, node)))
         });
-        Cells { nodes, teeth, cells: cells.collect() }
+        Cells { is_before: part == BodyPart::Space, nodes, teeth, cells: cells.collect() }
     }
 
     /// The tooth of a node, and which node of it.
@@ -331,6 +333,8 @@ struct Surface<'b> {
     one_at_tip: usize,
     /// Vertices of nodes at places along, then of nodes at places of the rest.
     vertices: [Vec<u32>; 2],
+    /// Those on the axis, which all nodes at a place along, or of the rest, have in common.
+    on_axis: BTreeMap<[usize; 2], u32>,
     mesh: ClosedMesh,
 }
 
@@ -343,19 +347,30 @@ impl<'b> Surface<'b> {
         let mesh = ClosedMesh { vertices: Vec::new(), triangles: Vec::new() };
         let one_at_tip = if body.has_edge { layout.tooth + 1 } else { 0 };
         let first_below = layout.in_rim(layout.rim, 0);
-        Surface { body, cells, teeth, first_below, one_at_tip, vertices, mesh }
+        let on_axis = BTreeMap::new();
+        Surface { body, cells, teeth, first_below, one_at_tip, vertices, on_axis, mesh }
     }
 
     fn tooth(&self, number: usize) -> &Tooth {
-        &self.teeth[number % self.teeth.len()]
+        let first = if self.cells.is_before { self.teeth.len() - 1 } else { 0 };
+        &self.teeth[(first + number) % self.teeth.len()]
+    }
+
+    fn is_on_axis(&self, [_, rho, _]: Polar) -> bool {
+        self.body.arrangement().is_closed() && rho.abs() < ON_AXIS
+    }
+
+    fn place(&self, (node, j): (usize, usize)) -> Polar {
+        let (tooth, own) = self.cells.of(node);
+        self.tooth(tooth).places[j][own]
     }
 
     fn vertex(&mut self, (node, j): (usize, usize)) -> u32 {
         let (tooth, own) = self.cells.of(node);
-        let (node, own) = if own < self.one_at_tip { (node - own, 0) } else { (node, own) };
-        let place = self.tooth(tooth).places[j][own];
+        let node = if own < self.one_at_tip { node - own } else { node };
+        let place = self.place((node, j));
         let slot = node * self.teeth[0].places.len() + j;
-        self.numbered(0, slot, tooth, place)
+        self.numbered([0, slot, j], tooth, place)
     }
 
     /// The vertex of a node below at a place of the rest of the outline; the first and what follows the last are those of the ends.
@@ -369,27 +384,45 @@ impl<'b> Surface<'b> {
         }
         let (tooth, own) = self.cells.of(node);
         let place = self.tooth(tooth).rest[k][own - self.first_below];
-        self.numbered(1, node * count + k, tooth, place)
+        self.numbered([1, node * count + k, k], tooth, place)
     }
 
-    fn numbered(&mut self, kind: usize, slot: usize, tooth: usize, place: Polar) -> u32 {
+    fn numbered(&mut self, [kind, slot, at]: [usize; 3], tooth: usize, place: Polar) -> u32 {
         if self.vertices[kind][slot] == NONE {
-            self.vertices[kind][slot] = self.mesh.vertices.len() as u32;
-            self.mesh.vertices.push(self.body.arrangement.position(shifted(place, self.body.way_of(tooth))));
+            let own = self.mesh.vertices.len() as u32;
+            let number = if self.is_on_axis(place) { *self.on_axis.entry([kind, at]).or_insert(own) } else { own };
+            if number == own {
+                let back = if self.cells.is_before { self.body.way_of(1) } else { 0.0 };
+                let place = shifted(place, self.body.way_of(tooth) - back);
+                self.mesh.vertices.push(self.body.arrangement.position(place));
+            }
+            self.vertices[kind][slot] = number;
         }
         self.vertices[kind][slot]
     }
 
+    /// Nothing along the axis: that bounds no body.
     fn quad(&mut self, corners: [(usize, usize); 4]) {
+        if corners.iter().all(|corner| self.is_on_axis(self.place(*corner))) {
+            return;
+        }
         let corners = corners.map(|corner| self.vertex(corner));
         self.split(corners);
     }
 
     fn around_rest(&mut self, [a, b]: [usize; 2]) {
-        for k in 0..self.teeth[0].rest.len() {
+        let segments: Vec<bool> = (0..self.teeth[0].rest.len()).map(|k| self.is_along_axis(k)).collect();
+        for (k, _) in segments.iter().enumerate().filter(|(_, is_along_axis)| !**is_along_axis) {
             let corners = [(a, k + 1), (b, k + 1), (b, k), (a, k)].map(|(node, k)| self.vertex_of_rest(node, k));
             self.split(corners);
         }
+    }
+
+    /// Whether the rest of the outline runs along the axis behind one of its places.
+    fn is_along_axis(&self, k: usize) -> bool {
+        let tooth = &self.teeth[0];
+        let next = tooth.rest.get(k + 1).map_or(tooth.places[0][self.first_below], |places| places[0]);
+        self.is_on_axis(tooth.rest[k][0]) && self.is_on_axis(next)
     }
 
     /// Two triangles along the shorter diagonal; one, or none, where corners are the same.

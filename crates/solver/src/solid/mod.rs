@@ -1,6 +1,7 @@
 //! Bodies: blanks turned about an axis, or drawn along a line, less their tooth spaces.
 
 pub(crate) mod arrangement;
+pub(crate) mod ball;
 pub(crate) mod blank;
 pub(crate) mod body;
 pub(crate) mod bricks;
@@ -8,5 +9,6 @@ pub(crate) mod chart;
 pub(crate) mod gauge;
 pub(crate) mod mass;
 pub(crate) mod mesh;
+pub(crate) mod parts;
 pub(crate) mod section;
 pub(crate) mod sheets;

@@ -6,9 +6,10 @@ use flank_chain_dsl::Solid;
 use flank_solver::{Blank, SurfacePoint};
 
 use crate::project::failure::Failure;
-use crate::project::units;
+use crate::project::units::length;
 use crate::solve::body::course::Course;
 use crate::solve::body::piece::{EndLine, EndsOf, Piece, SAME_LINE, apart, positions};
+use crate::solve::body::refusal::{refused, wider};
 
 /// Shares along at which the ends of neighbours are held against each other.
 const ALONG: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
@@ -85,13 +86,18 @@ impl<'j, 'g> Borders<'j, 'g> {
         let name = &piece.surface.name;
         let said = [0, 1].map(|side| self.joint(k, side).and_then(|(joint, own)| joint.unknown(own)));
         match said {
-            [Some(a), Some(b)] if a != b => Err(Failure::from(format!(
-                "`{name}` of `{}` meets its neighbours by different unknowns of its tool: its rows have no common one",
-                solid.name
-            ))),
+            [Some(a), Some(b)] if a != b => {
+                let of = [a, b].map(|unknown| &piece.surface.unknowns[unknown].name);
+                let message = format!(
+                    "`{name}` of `{}` ends at one neighbour by `{}` and at the other by `{}`: its rows have no common unknown",
+                    solid.name, of[0], of[1]
+                );
+                Err(refused(solid, message, &["surfaces of the tool that end at both neighbours by the same unknown"]))
+            }
             [Some(unknown), _] | [_, Some(unknown)] => Ok(unknown),
             [None, None] => {
-                Ok(piece.across_tool(blank).ok_or(format!("`{name}` has no unknown that tells its rows apart"))?)
+                let message = || format!("`{name}` has no unknown that tells its rows apart");
+                piece.across_tool(blank).ok_or_else(|| refused(solid, message(), &[]))
             }
         }
     }
@@ -174,11 +180,13 @@ fn shared<'j, 'g>(solid: &Solid, pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> 
         return Ok(ends);
     }
     Err(match nearest {
-        Some((_, gap)) => Failure::from(format!(
-            "{} leave a gap of {} mm: name the surface between them",
-            told(solid, pieces),
-            units::scientific(gap, 2)
-        )),
+        Some((_, gap)) => {
+            let message = format!("{} leave a gap of {}", told(solid, pieces), length(gap));
+            let named = "name in `of:` the surface between them, if the tool has one there";
+            let left_out = "or leave out of `of:` the one of them that leaves nothing on this gear, as a protuberance may: its neighbours \
+                            then end where they meet";
+            refused(solid, message, &[named, left_out])
+        }
         None => lost(solid, pieces, blank),
     })
 }
@@ -235,12 +243,14 @@ fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Op
 
 /// Neighbours whose common line is not found.
 fn lost(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Failure {
-    let ends = |piece: &&Piece<'_, '_>| {
-        let beyond = piece.beyond_ends(blank)?;
-        Some(format!(": points where `{}` ends are {beyond}", piece.surface.name))
+    let beyond = |piece: &&Piece<'_, '_>| {
+        let beyond = piece.beyond_ends(blank);
+        let (told, ways) = wider(&piece.surface, &beyond);
+        (!beyond.is_empty()).then(|| (format!(": points where `{}` ends are {told}", piece.surface.name), ways))
     };
-    let why = pieces.iter().find_map(ends).unwrap_or_default();
-    Failure::from(format!("{} neither end in one line nor meet all along the space{why}", told(solid, pieces)))
+    let (why, ways) = pieces.iter().find_map(beyond).unwrap_or_default();
+    let message = format!("{} neither end in one line nor meet all along the space{why}", told(solid, pieces));
+    refused(solid, message, &ways.iter().map(String::as_str).collect::<Vec<&str>>())
 }
 
 fn told(solid: &Solid, [first, second]: [&Piece<'_, '_>; 2]) -> String {

@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BrickBody, BrickSet, Header};
 use flank_expr::Graph;
-use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickSide};
+use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickSide, SpacePart};
 
-use crate::project::choices::{BrickFormat, ElementOrder};
+use crate::project::choices::{BrickFormat, Choice, ElementOrder};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
@@ -18,6 +18,8 @@ use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve::body::bricks_result::{BrickNumbers, MeshResult};
+use crate::solve::body::file_of;
+use crate::solve::body::refusal;
 use crate::solve::body::space::{self, Space};
 use crate::solve::dataset::header;
 
@@ -56,18 +58,18 @@ fn meshed(
     let (mut solids, mut not_done) = (Vec::new(), Vec::new());
     for solid in &job.solids {
         let _working = session.begin(format!("meshing {}", solid.name))?;
-        let kind = match space::body(job, solid, session) {
+        match space::body(job, solid, session) {
             Ok(space) => match one(job, solid, &space, (request, &header), &mut folder)? {
-                Ok(numbers) => {
-                    solids.push(numbers);
-                    continue;
-                }
-                Err(reason) => (NotDoneKind::NoBricks, reason),
+                Ok(numbers) => solids.push(numbers),
+                Err(refused) => not_done.push(refused),
             },
-            Err(Failure::Input(reason)) => (NotDoneKind::NoBody, reason),
-            Err(other) => return Err(other),
-        };
-        not_done.push(NotDone::new(kind.0, &solid.name, kind.1));
+            Err(failure) => not_done.push(refusal::no_body(solid, failure)?),
+        }
+    }
+    for told in &mut not_done {
+        let solid = job.solids.iter().find(|solid| told.of.as_ref() == Some(&solid.name));
+        let formats = request.format.iter().map(|format| format.name());
+        told.details.extend(solid.into_iter().flat_map(|solid| folder.older(&file_of(job, solid), formats.clone())));
     }
     Ok(MeshResult {
         job: job.name.clone(),
@@ -85,14 +87,24 @@ fn one(
     space: &Space,
     (request, header): (&MeshRequest, &Header),
     folder: &mut Folder<'_>,
-) -> Result<Result<BrickNumbers, String>, Failure> {
+) -> Result<Result<BrickNumbers, NotDone>, Failure> {
     let body = &space.body;
     let teeth = request.teeth.unwrap_or(body.teeth());
+    let refused = |message: String, ways: &[&str]| {
+        let ways = ways.iter().map(ToString::to_string).collect();
+        Ok(Err(NotDone::new(NotDoneKind::NoBricks, &solid.name, message).with(ways)))
+    };
     if teeth > body.teeth() {
-        return Ok(Err(format!("`{}` has {} teeth: there are no {teeth} of them", solid.name, body.teeth())));
+        let message = format!("`{}` has {} teeth: there are no {teeth} of them", solid.name, body.teeth());
+        return refused(message, &["fewer with option `teeth`, or `all`"]);
     }
     if body.least_land() < LEAST_LAND {
-        return Ok(Err(format!("the teeth of `{}` end in an edge: bricks need a land at their tip", solid.name)));
+        let message = format!("the teeth of `{}` end in an edge: bricks need a land at their tip", solid.name);
+        return refused(message, &["a lower tip of the blank, if it is to have one"]);
+    }
+    if body.reaches_axis() {
+        let message = format!("the blank of `{}` reaches its axis: bricks would have no room there", solid.name);
+        return refused(message, &["a bore, however small: its outline then runs beside the axis and not along it"]);
     }
     let order = match request.order {
         ElementOrder::First => BrickOrder::First,
@@ -104,14 +116,17 @@ fn one(
     let mesh = body.bricks(&counts, order, teeth as usize);
     let quality = mesh.quality();
     if quality.least_scaled_jacobian < LEAST_SHAPE || quality.least_jacobian <= 0.0 {
-        return Ok(Err(format!(
-            "the bricks of `{}` would be folded or nearly so: their least scaled Jacobian is {:.3}, and has to be {LEAST_SHAPE} at the least; try other numbers with option `elements`",
+        let message = format!(
+            "the bricks of `{}` would be folded or nearly so: their least scaled Jacobian is {:.3}, and has to be {LEAST_SHAPE} at the least",
             solid.name,
             quality.least_scaled_jacobian.min(quality.least_jacobian)
-        )));
+        );
+        let simpler = "a simpler blank: below the teeth, lines from every place of the spaces to the rest of the outline must not cross it, \
+                       as they do where a web is much narrower than the teeth";
+        return refused(message, &["other numbers with option `elements`", simpler]);
     }
     let sets = sets(&mesh, body, &names(space, body), teeth);
-    let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
+    let file = file_of(job, solid);
     let written = BrickBody {
         name: &solid.name,
         frame: &solid.frame,
@@ -147,20 +162,18 @@ fn check_size(name: &str, [bricks, nodes]: [usize; 2], order: BrickOrder) -> Res
 
 /// What the sets on charts are called, in the order of the body.
 fn names(space: &Space, body: &Body) -> Vec<String> {
-    let (charts, is_reversed) = (body.charts(), body.is_reversed());
-    let count = charts.len();
-    let name = |k: usize| {
+    let (count, is_reversed) = (body.charts().len(), body.is_reversed());
+    let name = |(k, part): (usize, SpacePart)| {
         let own = &space.names[if is_reversed { count - 1 - k } else { k }];
-        let kind = if k == 0 || k + 1 == count {
-            "FLANK"
-        } else if 2 * k + 1 == count {
-            "ROOT"
-        } else {
-            "FILLET"
+        let kind = match part {
+            SpacePart::Chamfer => "CHAMFER",
+            SpacePart::Flank => "FLANK",
+            SpacePart::Fillet => "FILLET",
+            SpacePart::Root => "ROOT",
         };
         format!("{kind}_{}", set_name(own))
     };
-    (0..count).map(name).collect()
+    body.space_parts().into_iter().enumerate().map(name).collect()
 }
 
 /// As readers of input files take names: they do not tell small letters from large ones.

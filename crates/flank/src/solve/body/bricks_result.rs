@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::project::answer::Answer;
 use crate::project::remark::NotDone;
+use crate::project::units;
 
 /// Bodies of a job as bricks, of `flank mesh`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
@@ -174,7 +175,7 @@ impl fmt::Display for BrickNumbers {
             "  a tooth  {} across its space, {along} along, {band} + {core} + {band} from flank to flank, {rim} below",
             across.join(" + ")
         )?;
-        writeln!(f, "  faces    off the generated surfaces by at most {:.3} um", 1e3 * self.deviation_mm)?;
+        writeln!(f, "  faces    off the generated surfaces by at most {}", units::off(self.deviation_mm))?;
         let off = 1e6 * (self.volume_mm3 / self.exact_volume_mm3 - 1.0);
         writeln!(
             f,
@@ -188,8 +189,11 @@ impl fmt::Display for BrickNumbers {
         )?;
         let of_others = |name: &str| (2..=*meshed_teeth).any(|tooth| name.ends_with(&format!("_T{tooth}")));
         let names: Vec<&str> = self.sets.iter().map(|set| set.name.as_str()).filter(|name| !of_others(name)).collect();
-        let others =
-            if *meshed_teeth > 1 { format!("; _T2 to _T{meshed_teeth} on the other teeth") } else { String::new() };
+        let others = match meshed_teeth {
+            1 => String::new(),
+            2 => "; _T2 on the other tooth".to_string(),
+            _ => format!("; _T2 to _T{meshed_teeth} on the other teeth"),
+        };
         writeln!(f, "  sets     {}{others}", names.join(", "))
     }
 }

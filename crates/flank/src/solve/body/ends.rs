@@ -6,6 +6,7 @@ use flank_solver::{Blank, OutlineSegment, SurfacePoint};
 use crate::project::failure::Failure;
 use crate::solve::blank;
 use crate::solve::body::piece::Piece;
+use crate::solve::body::refusal::refused;
 
 /// The blank of a solid with the segments that its spaces run between.
 ///
@@ -23,12 +24,16 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let apart = |a: usize, b: usize| (b - a) % count > 1 && (a + count - b) % count > 1;
     let pairs = (0..count).flat_map(|a| (a + 1..count).map(move |b| (a, b))).filter(|(a, b)| apart(*a, *b));
     let Some((a, b)) = pairs.min_by(|(a, b), (c, d)| (off[*a] + off[*b]).total_cmp(&(off[*c] + off[*d]))) else {
-        return Err(format!(
+        let message = format!(
             "the outline of `{}` has {count} segments: tooth spaces run from one to another, with the tip between them on one side and \
              the rest of the blank on the other",
             solid.name
-        )
-        .into());
+        );
+        return Err(refused(
+            solid,
+            message,
+            &["an outline of four segments or more: tip, both ends, and what is below the teeth"],
+        ));
     };
     let between = |from: usize, to: usize| {
         (1..count).map(move |k| (from + k) % count).take_while(move |k| *k != to).collect::<Vec<usize>>()
@@ -38,14 +43,16 @@ pub(crate) fn blank(solid: &Solid, pieces: &[Piece<'_, '_>]) -> Result<Blank, Fa
     let (begin, tip, end) = if is_there { (a, there, b) } else { (b, back, a) };
     let [tip] = tip[..] else {
         let names: Vec<String> = tip.iter().map(|k| format!("`{}`", segments[*k].name)).collect();
-        return Err(format!(
+        let message = format!(
             "the spaces of `{}` run from `{}` to `{}` of its outline, and leave it by {}: one segment between both ends is needed",
             solid.name,
             segments[begin].name,
             segments[end].name,
             if names.is_empty() { "none".to_string() } else { names.join(", ") }
-        )
-        .into());
+        );
+        let chamfer =
+            "one line or arc as the tip; a chamfer of the teeth's tips that the tool cuts is a surface of the space";
+        return Err(refused(solid, message, &[chamfer]));
     };
     Ok(Blank { outline, ends: [begin, tip, end] })
 }

@@ -1,8 +1,9 @@
 //! What gauges and calipers find on a body.
 
-use flank_solver::{Arrangement, BallGauge, Body, Span, Thickness};
+use flank_solver::{Arrangement, BallFault, BallGauge, Body, Span, Thickness};
 
 use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::units::length;
 use crate::solve::body::result::{BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, SpanNumbers, ThicknessNumbers};
 
 /// Circles from the form diameter to the tip on which the thickness is told.
@@ -10,7 +11,7 @@ const CIRCLES: usize = 5;
 /// Balls come in such steps, mm.
 const BALL_STEP: f64 = 0.25;
 
-/// A ball of the diameter that is asked for, or of one that touches about the middle of the flanks. Spans and balls are dimensions of
+/// A ball of the diameter that is asked for, or of one that touches the flanks as near to their middle as one fits in. Spans and balls are dimensions of
 /// cylindrical gears: those whose tip is a cylinder.
 pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
     let [tip, root] = body.tip_and_root();
@@ -20,8 +21,7 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
         return GaugeNumbers { tip_diameter_mm: tip, root_diameter_mm: root, ..GaugeNumbers::default() };
     }
     let form = body.form();
-    let deepest = if body.is_external() { form[0].max(form[1]) } else { form[0].min(form[1]) };
-    let circle = |k: usize| deepest + (tip - deepest) * k as f64 / (CIRCLES - 1) as f64;
+    let circle = circles(body);
     let thickness = (0..CIRCLES).filter_map(|k| body.thickness(circle(k)));
     let thickness: Vec<ThicknessNumbers> = thickness.map(|of| thickness_numbers(body, of)).collect();
     if let Arrangement::Straight { pitch } = body.arrangement() {
@@ -30,7 +30,6 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
     }
     let is_cylindrical = is_cylindrical(body);
     let most = if is_cylindrical { body.teeth() / 2 } else { 0 };
-    let diameter = || ball.unwrap_or_else(|| middle_ball(body, circle(CIRCLES / 2)));
     let face = body.is_face_gear().then_some(FaceNumbers { tip_z_mm: tip, root_z_mm: root, form_z_mm: form });
     let diameters = |of: f64| match &face {
         Some(_) => thickness.first().and_then(|tooth| tooth.diameter_mm).unwrap_or_default(),
@@ -42,15 +41,25 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
         form_diameters_mm: Some(form.map(diameters)),
         thickness,
         spans: (1..=most).filter_map(|teeth| body.span(teeth)).map(span_numbers).collect(),
-        balls: is_cylindrical.then(|| body.ball(diameter())).flatten().map(ball_numbers),
+        balls: is_cylindrical.then(|| fitting(body, ball, circle)).flatten().map(ball_numbers),
         edge_below_tip_mm,
         face,
         bar: None,
     }
 }
 
+/// The ball that is asked for, or the first that fits in of those that touch about on a circle: on the middle one, then on those beside it.
+fn fitting(body: &Body, ball: Option<f64>, circle: impl Fn(usize) -> f64) -> Option<BallGauge> {
+    if let Some(ball) = ball {
+        return body.ball(ball).ok();
+    }
+    let mut circles: Vec<usize> = (0..CIRCLES).collect();
+    circles.sort_by_key(|k| k.abs_diff(CIRCLES / 2));
+    circles.into_iter().find_map(|k| body.ball(circle_ball(body, circle(k))).ok())
+}
+
 /// About the width of the space where it is touched.
-fn middle_ball(body: &Body, rho: f64) -> f64 {
+fn circle_ball(body: &Body, rho: f64) -> f64 {
     (1.05 * body.space_width(rho).unwrap_or_default() / BALL_STEP).ceil() * BALL_STEP
 }
 
@@ -60,16 +69,35 @@ fn is_cylindrical(body: &Body) -> bool {
     body.arrangement().is_closed() && outline.center.is_none() && outline.from[1] == outline.to[1]
 }
 
-/// Why there is no dimension over balls of the diameter that is asked for.
-pub(crate) fn no_ball(name: &str, body: &Body, ball: f64) -> NotDone {
-    let message = if is_cylindrical(body) && body.distinct() == 1 && body.teeth() > 1 {
-        format!("balls of {ball} mm do not touch both flanks of a space of `{name}` half-way along")
-    } else {
-        format!(
+/// Why there is no dimension over balls of the diameter that is asked for, of a solid with surfaces of these names.
+pub(crate) fn no_ball(name: &str, (body, surfaces): (&Body, &[String]), ball: f64) -> NotDone {
+    let has_one = is_cylindrical(body) && body.distinct() == 1 && body.teeth() > 1;
+    let message = match body.ball(ball).err().filter(|_| has_one) {
+        None => format!(
             "`{name}` has no dimension over balls: only of a gear with several teeth that are alike and a cylinder as its tip there is one"
-        )
+        ),
+        Some(BallFault::NotTouching) => {
+            format!("balls of {ball} mm do not touch both flanks of a space of `{name}` half-way along")
+        }
+        Some(BallFault::Inside { chart, by }) => format!(
+            "balls of {ball} mm that touch both flanks of a space of `{name}` half-way along would lie {} deep in the steel of `{}`",
+            length(by),
+            surfaces[chart]
+        ),
+        Some(BallFault::InEachOther) => {
+            format!("balls of {ball} mm in opposite spaces of `{name}` would lie in each other")
+        }
     };
-    NotDone::new(NotDoneKind::NoBall, name, message)
+    let fits = fitting(body, None, circles(body)).filter(|_| has_one);
+    let way = fits.map(|of| format!("balls of {} mm fit", of.diameter));
+    NotDone::new(NotDoneKind::NoBall, name, message).with(way.into_iter().collect())
+}
+
+/// The circles from the form diameter to the tip.
+fn circles(body: &Body) -> impl Fn(usize) -> f64 {
+    let ([tip, _], form) = (body.tip_and_root(), body.form());
+    let deepest = if body.is_external() { form[0].max(form[1]) } else { form[0].min(form[1]) };
+    move |k: usize| deepest + (tip - deepest) * k as f64 / (CIRCLES - 1) as f64
 }
 
 fn thickness_numbers(body: &Body, of: Thickness) -> ThicknessNumbers {

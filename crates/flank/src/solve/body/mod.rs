@@ -8,6 +8,7 @@ pub(crate) mod ends;
 pub(crate) mod gauges;
 pub(crate) mod mounted;
 pub(crate) mod piece;
+pub(crate) mod refusal;
 pub(crate) mod result;
 pub(crate) mod shape;
 pub(crate) mod smooth;
@@ -18,7 +19,7 @@ use flank_export::{BodyMesh, GearBody, Header, PlacedBody, PlacedFrame};
 use flank_expr::Graph;
 use flank_solver::{Body, BodyPart, ClosedMesh};
 
-use crate::project::choices::{MeshFormat, SolidPart};
+use crate::project::choices::{Choice, MeshFormat, SolidPart};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
 use crate::project::monitor::Monitor;
@@ -70,12 +71,16 @@ fn built(
                     NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
                 }));
                 let no_ball = request.ball.filter(|_| numbers.gauges.balls.is_none());
-                not_done.extend(no_ball.map(|ball| gauges::no_ball(&solid.name, &shapes.body, ball)));
+                not_done
+                    .extend(no_ball.map(|ball| gauges::no_ball(&solid.name, (&shapes.body, &numbers.surfaces), ball)));
                 solids.push(numbers);
                 made.push(shapes);
             }
-            Err(Failure::Input(reason)) => not_done.push(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
-            Err(other) => return Err(other),
+            Err(failure) => {
+                let formats = request.format.iter().map(|format| format.name());
+                let older = folder.older(&file_of(job, solid), formats.chain(request.step.map(|_| "step")));
+                not_done.push(refusal::no_body(solid, failure)?.with_more(older));
+            }
         }
     }
     let is_pair = request.part == SolidPart::Gear && made.len() > 1;
@@ -84,6 +89,10 @@ fn built(
         let message = format!("the bodies of {} are not put together: {reason}", job.name);
         not_done.push(NotDone::new(NotDoneKind::NoContact, &job.name, message));
         None
+    });
+    let mounting = mounting.map(|(mounting, reaches_in)| {
+        not_done.extend(reaches_in);
+        mounting
     });
     if let Some(mounting) = &mounting {
         together(job, (mounting, &made), (request, &header), &mut folder)?;
@@ -113,7 +122,7 @@ fn one(
         SolidPart::Space => BodyPart::Space,
     };
     let mesh = body.mesh(part, &body.fineness(part, request.deviation));
-    let file = if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) };
+    let file = file_of(job, solid);
     let written =
         BodyMesh { name: &solid.name, frame: &solid.frame, vertices: &mesh.vertices, triangles: &mesh.triangles };
     for format in &request.format {
@@ -140,6 +149,11 @@ fn one(
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
     Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }))
+}
+
+/// What the files of a solid are called.
+fn file_of(job: &Job<'_>, solid: &Solid) -> String {
+    if job.solids.len() == 1 { job.name.clone() } else { format!("{}.{}", job.name, solid.name) }
 }
 
 /// A body as it is written.

@@ -6,12 +6,17 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::contact::pair::Members;
+use crate::contact::pattern::on_both;
 use crate::contact::rolling::Rolling;
+use crate::contact::summary::penetration;
 use crate::project::failure::Failure;
+use crate::project::remark::NotDone;
 use crate::project::session::Session;
 
 /// Steps over a pitch at which the contact is followed: its middle is all that is wanted.
 const STEPS: usize = 12;
+/// Flanks are compared while they are near enough for a film of this, mm: what they reach into each other does not depend on it.
+const FILM: f64 = 0.0;
 
 /// Bodies of a job as a contact has them in mesh.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
@@ -37,11 +42,12 @@ pub struct MountedSolid {
     pub axes: [[f64; 3]; 3],
 }
 
-/// The bodies in the middle of the first contact that has both; nothing where there is none.
+/// The bodies in the middle of the first contact that has both, and whether they reach into each other over a pitch; nothing where there is
+/// none.
 ///
 /// # Errors
 /// If a flank is not sampled, the flanks do not touch, or the work is cancelled.
-pub(crate) fn mounting(job: &Job<'_>, session: Session<'_>) -> Result<Option<Mounting>, Failure> {
+pub(crate) fn mounting(job: &Job<'_>, session: Session<'_>) -> Result<Option<(Mounting, Option<NotDone>)>, Failure> {
     let has_both = |surfaces: &[usize; 2]| {
         surfaces.iter().all(|surface| job.solids.iter().any(|solid| solid.space.contains(surface)))
     };
@@ -54,6 +60,7 @@ pub(crate) fn mounting(job: &Job<'_>, session: Session<'_>) -> Result<Option<Mou
         return Err(format!("the flanks of contact `{}` do not touch", contact.name).into());
     };
     let pair = members.pair(job, &errors, &[]);
+    let told = rolling.and_then(|rolling| penetration(&members, &on_both(&members, &pair, &rolling, FILM)));
     let placed = |(k, placement): (usize, &flank_expr::geometry::Chain<'_>)| {
         let tape = Tape::new(&placement.pose().matrix4().concat(), &[contact.roll.variable, contact.lag.variable])
             .expect("a job without errors leaves nothing unbound");
@@ -66,6 +73,6 @@ pub(crate) fn mounting(job: &Job<'_>, session: Session<'_>) -> Result<Option<Mou
             axes: [0, 1, 2].map(column),
         }
     };
-    let members = pair.placements.iter().enumerate().map(placed).collect();
-    Ok(Some(Mounting { contact: contact.name.clone(), roll, lag, members }))
+    let placed = pair.placements.iter().enumerate().map(placed).collect();
+    Ok(Some((Mounting { contact: contact.name.clone(), roll, lag, members: placed }, told)))
 }

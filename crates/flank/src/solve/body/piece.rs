@@ -4,14 +4,14 @@ use std::borrow::Cow;
 use std::cell::RefCell;
 use std::rc::Rc;
 
-use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_chain_dsl::{GeneratedSurface, Job, Sample, Solid};
 use flank_expr::geometry::{Axis, Chain, Step, Vector3};
 use flank_expr::{Expr, InstructionSet};
 use flank_solver::{Arrangement, Blank, BoundSurface, Outcome, Range, SurfacePoint, SurfacePoints, SurfaceProblem};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
-use crate::project::units;
+use crate::solve::body::refusal::{self, refused};
 use crate::solve::sampled::{SOLVED, as_solved};
 use crate::solve::surface::{bound, problem};
 
@@ -61,22 +61,26 @@ impl<'j, 'g> Piece<'j, 'g> {
     /// If the surface is not sampled, or no point of its sample is solved.
     pub(crate) fn new(
         job: &'j Job<'g>,
-        (surface, arrangement): (&'j GeneratedSurface<'g>, Arrangement),
+        (solid, surface, arrangement): (&Solid, &'j GeneratedSurface<'g>, Arrangement),
         session: Session<'j>,
     ) -> Result<Piece<'j, 'g>, Failure> {
         let name = &surface.name;
-        let sample = surface.sample.as_ref().ok_or(format!(
-            "`{name}` bounds the spaces of a solid and is not sampled: its sample says which branch is meant; add `sample {name} {{ … }}`"
-        ))?;
+        let sample = surface.sample.as_ref().ok_or_else(|| {
+            let message = format!(
+                "`{name}` bounds the spaces of `{}` and is not sampled: its sample says which branch is meant",
+                solid.name
+            );
+            refused(solid, message, &[&format!("add `sample {name} {{ … }}`")])
+        })?;
         let sample = thinned(sample);
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let solved = || as_solved(&problem(job, surface, coordinates, session), &sample);
         let solved = session.sample((job, surface), &sample, SOLVED, solved);
-        let known: Vec<SurfacePoint> =
-            solved.points.into_iter().filter(|point| point.outcome == Outcome::Solved).collect();
-        if known.is_empty() {
-            return Err(format!("`{name}` bounds the spaces of a solid, and no point of its sample is solved").into());
+        let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
+        if !solved.points.iter().any(is_solved) {
+            return Err(refusal::unsolved(job, (solid, surface), &solved.points));
         }
+        let known = solved.points.into_iter().filter(is_solved).collect();
         let surface = Cow::Borrowed(surface);
         Ok(Piece { job, surface, arrangement, session, known, problems: RefCell::default() })
     }
@@ -232,30 +236,27 @@ impl<'j, 'g> Piece<'j, 'g> {
         [low, high].into_iter().filter(|value| value.is_finite()).filter_map(line).collect()
     }
 
-    /// What keeps the lines on which its rows end from running all along the space, if that is a range.
-    pub(crate) fn beyond_ends(&self, blank: &Blank) -> Option<String> {
-        let unknown = self.across_tool(blank)?;
+    /// The unknowns whose ranges keep the lines on which its rows end from running all along the space, and by how much.
+    pub(crate) fn beyond_ends(&self, blank: &Blank) -> Vec<(usize, f64)> {
+        let Some(unknown) = self.across_tool(blank) else { return Vec::new() };
         let Range { low, high } = self.bound().ranges()[unknown];
         let ends = [low, high].into_iter().filter(|value| value.is_finite());
         // from the middle of what is known to both ends
         let known = self.known.iter().map(|point| self.along_of(blank, point)).sum::<f64>() / self.known.len() as f64;
         let along = [0.0, known, 1.0];
-        ends.map(|value| self.on_line((unknown, value), blank, &along)).find_map(|points| self.beyond(&points))
+        let beyond = ends.map(|value| self.beyond(&self.on_line((unknown, value), blank, &along)));
+        beyond.into_iter().find(|beyond| !beyond.is_empty()).unwrap_or_default()
     }
 
-    /// How far unknowns would have to go beyond their ranges to reach points; nothing where all of them are within.
-    pub(crate) fn beyond(&self, points: &SurfacePoints) -> Option<String> {
-        let unknowns = &self.surface.unknowns;
-        let mut most = vec![0.0_f64; unknowns.len()];
+    /// The unknowns that would have to go beyond their ranges to reach points, and how far.
+    pub(crate) fn beyond(&self, points: &SurfacePoints) -> Vec<(usize, f64)> {
+        let mut most = vec![0.0_f64; self.surface.unknowns.len()];
         for outcome in (0..points.len()).map(|k| points.outcome(k)) {
             if let Outcome::Outside { unknown, by } = outcome {
                 most[unknown] = most[unknown].max(by);
             }
         }
-        let each = unknowns.iter().zip(most).filter(|(_, by)| *by > 0.0);
-        let each: Vec<String> =
-            each.map(|(of, by)| format!("`{}` by {}", of.name, units::text(of.dimension, by, 4))).collect();
-        (!each.is_empty()).then(|| format!("beyond the ranges of their unknowns, {}", each.join(", ")))
+        most.into_iter().enumerate().filter(|(_, by)| *by > 0.0).collect()
     }
 
     /// The values of an unknown at points of a line along the space; `None` where one is no point of the surface.

@@ -7,7 +7,8 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::project::answer::Answer;
-use crate::project::remark::NotDone;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::units;
 use crate::solve::body::mounted::Mounting;
 
 /// Bodies of a job, of `flank solve` with option `solid`.
@@ -200,6 +201,13 @@ impl SolidNumbers {
     }
 }
 
+impl SolidResult {
+    /// Whether the members of the pair reach into each other.
+    fn is_in_each_other(&self) -> bool {
+        self.not_done.iter().any(|told| told.kind == NotDoneKind::Penetration)
+    }
+}
+
 impl Answer for SolidResult {
     fn not_done(&self) -> &[NotDone] {
         &self.not_done
@@ -212,7 +220,9 @@ impl fmt::Display for SolidResult {
         self.solids.iter().try_for_each(|solid| write!(f, "\n{solid}"))?;
         if let Some(Mounting { contact, members, .. }) = &self.mounting {
             let names: Vec<&str> = members.iter().map(|member| member.solid.as_str()).collect();
-            writeln!(f, "\n{} stand as they mesh in the middle of contact {contact}", names.join(" and "))?;
+            let (how, beside) =
+                if self.is_in_each_other() { ("", " and reach into each other") } else { ("as they mesh ", "") };
+            writeln!(f, "\n{} stand {how}in the middle of contact {contact}{beside}", names.join(" and "))?;
         }
         if self.files.is_empty() { Ok(()) } else { writeln!(f, "\nwrote {}", self.files.join(", ")) }
     }
@@ -236,7 +246,7 @@ impl fmt::Display for SolidNumbers {
             1e3 * mesh.deviation_mm,
             mesh.volume_mm3
         )?;
-        let told = |step: f64| format!("  faces    off by at most {:.3} um in the STEP file\n", 1e3 * step);
+        let told = |step: f64| format!("  faces    off by at most {} in the STEP file\n", units::off(step));
         f.write_str(&self.step_deviation_mm.map(told).unwrap_or_default())?;
         write!(f, "{}", self.gauges)
     }

@@ -8,7 +8,7 @@ use flank_solver::{Arrangement, Body, BodyPart, BodySheet, Fineness, Outcome, Sh
 use crate::project::failure::Failure;
 use crate::project::session::Session;
 use crate::solve::blank;
-use crate::solve::body::space;
+use crate::solve::body::{refusal, space};
 use crate::solve::solved::Solved;
 
 /// Teeth that are shown large.
@@ -49,8 +49,7 @@ impl Shape {
     ) -> Result<Shape, Failure> {
         let body = match space::body(job, solid, session) {
             Ok(space) => Ok(space.body),
-            Err(Failure::Input(reason)) => Err(reason),
-            Err(other) => return Err(other),
+            Err(failure) => Err(refusal::no_body(solid, failure)?.message),
         };
         let space = sampled(job, solid, solved);
         if body.is_err() && space.is_empty() {

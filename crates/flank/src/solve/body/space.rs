@@ -5,11 +5,11 @@ use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, Surface
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
-use crate::project::units;
 use crate::solve::blank;
 use crate::solve::body::borders::{Beside, Borders};
 use crate::solve::body::ends;
 use crate::solve::body::piece::{Piece, positions};
+use crate::solve::body::refusal::{self, refused};
 
 /// How far charts may be off between their points, mm: below what any file or number shows.
 const EXACT: f64 = 1e-8;
@@ -48,13 +48,12 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
     let borders = |k: usize| Borders::new(solid, (&spaces[k], &beside[k]), &blank);
     let borders: Vec<Borders<'_, '_>> = (0..spaces.len()).map(borders).collect::<Result<_, Failure>>()?;
     if spaces[0].len() < 2 && !borders[0].has_edge() {
-        return Err(format!(
-            "the space of `{}` is one surface: its body needs all of them from tip to tip, the root among them",
-            solid.name
-        )
-        .into());
+        let message =
+            format!("the space of `{}` is one surface: its body needs all of them from tip to tip", solid.name);
+        return Err(refused(solid, message, &["name them in their order in `of: […]`, the root among them"]));
     }
-    let faulty = |fault: BodyFault| faulty(solid, &blank, fault);
+    let names: Vec<&str> = spaces[0].iter().map(|piece| piece.surface.name.as_str()).collect();
+    let faulty = |fault: BodyFault| refusal::faulty(solid, (&blank, &names), fault);
     let (body, off) = match between(solid, (&spaces, &borders, &blank), session)? {
         (Ok(body), off) => (body, off),
         (Err(fault), _) => {
@@ -68,7 +67,7 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
             (body.map_err(faulty)?, off)
         }
     };
-    Ok(Space { body, names: spaces[0].iter().map(|piece| piece.surface.name.clone()).collect(), off })
+    Ok(Space { body, names: names.into_iter().map(str::to_string).collect(), off })
 }
 
 /// The job of each space that differs from the first one, and of that: its parameter says which space it is.
@@ -88,7 +87,7 @@ fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
 
 fn pieces<'j, 'g>(job: &'j Job<'g>, solid: &Solid, session: Session<'j>) -> Result<Vec<Piece<'j, 'g>>, Failure> {
     let arrangement = blank::arrangement(solid);
-    solid.space.iter().map(|at| Piece::new(job, (&job.surfaces[*at], arrangement), session)).collect()
+    solid.space.iter().map(|at| Piece::new(job, (solid, &job.surfaces[*at], arrangement), session)).collect()
 }
 
 /// What may lie beside a space: the same space one on, whichever way round they are counted, or the spaces that are counted before and behind it.
@@ -201,44 +200,19 @@ fn at_tip(
 fn all_solved(solid: &Solid, (piece, what): (&Piece<'_, '_>, &str), points: &SurfacePoints) -> Result<(), Failure> {
     let open: Vec<usize> = (0..points.len()).filter(|k| points.outcome(*k) != Outcome::Solved).collect();
     let Some(first) = open.first() else { return Ok(()) };
-    let outcome = match points.outcome(*first) {
-        Outcome::CutAway(_) => "undercut: the tool cuts them away again".to_string(),
-        Outcome::Outside { .. } => piece.beyond(points).unwrap_or_default(),
-        Outcome::Singular => "singular".to_string(),
-        Outcome::Ambiguous => "on several branches: its sample needs a `keep`".to_string(),
-        _ => "not found".to_string(),
+    let (outcome, ways) = match points.outcome(*first) {
+        Outcome::CutAway(_) => ("undercut: the tool cuts them away again".to_string(), Vec::new()),
+        Outcome::Outside { .. } => refusal::wider(&piece.surface, &piece.beyond(points)),
+        Outcome::Singular => ("singular".to_string(), Vec::new()),
+        Outcome::Ambiguous => ("on several branches".to_string(), vec!["a `keep` in its sample".to_string()]),
+        _ => ("not found".to_string(), Vec::new()),
     };
-    Err(format!(
+    let message = format!(
         "`{}` does not reach {what} in the spaces of `{}`: {} of {} points there are {outcome}",
         piece.surface.name,
         solid.name,
         open.len(),
         points.len()
-    )
-    .into())
-}
-
-fn faulty(solid: &Solid, blank: &Blank, fault: BodyFault) -> Failure {
-    let length = |mm: f64| units::scientific(mm, 2);
-    let segments = blank.outline.segments();
-    match fault {
-        BodyFault::Pointed { overlap, share, .. } => format!(
-            "the teeth of `{}` are pointed below the tip: their flanks overlap by {} mm at `{}`, {:.0} % of the way from `{}` to `{}`",
-            solid.name, length(overlap), segments[blank.ends[1]].name, 100.0 * share,
-            segments[blank.ends[0]].name, segments[blank.ends[2]].name
-        ),
-        BodyFault::Overlap { overlap, rho } => format!(
-            "the spaces of `{}` run into each other by {} mm at {rho:.3} mm from the axis: fewer teeth, or narrower spaces",
-            solid.name, length(overlap)
-        ),
-        BodyFault::Through { segment, by } => format!(
-            "the spaces of `{}` go {} mm through `{}` of its outline",
-            solid.name, length(by), segments[segment].name
-        ),
-        BodyFault::NoWall { segment, place: [z, rho] } => format!(
-            "the spaces of `{}` reach `{}` of its outline at z {z:.4} mm, {rho:.4} mm from {}: no wall is left between them",
-            solid.name, segments[segment].name,
-            if blank::arrangement(solid).is_closed() { "the axis" } else { "x = 0" }
-        ),
-    }.into()
+    );
+    Err(refused(solid, message, &ways.iter().map(String::as_str).collect::<Vec<&str>>()))
 }

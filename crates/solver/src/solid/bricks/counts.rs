@@ -44,13 +44,14 @@ impl Body {
         let last = self.charts().len() - 1;
         let finer = profile as f64 / USUAL;
         let measured: Vec<(f64, f64)> = (0..=last).map(|k| length_and_turn(&middle_line(self, k))).collect();
-        let size = 0.5 * (measured[0].0 + measured[last].0) / profile as f64;
+        let flanks = self.flanks();
+        let size = 0.5 * flanks.map(|k| measured[k].0).iter().sum::<f64>() / profile as f64;
         let wanted = |k: usize| {
             let (length, turn) = measured[k];
             (length / size).max(turn / TURN * finer).ceil().max(1.0) as usize
         };
         let mut charts: Vec<usize> = (0..=last).map(|k| wanted(k).max(wanted(last - k))).collect();
-        (charts[0], charts[last]) = (profile, profile);
+        flanks.into_iter().for_each(|k| (charts[k], charts[last - k]) = (profile, profile));
         if last.is_multiple_of(2) {
             charts[last / 2] = charts[last / 2].next_multiple_of(2);
         }

@@ -1,0 +1,146 @@
+//! Why the surfaces of a solid bound no body, and ways out.
+
+use flank_chain_dsl::{GeneratedSurface, Job, Solid};
+use flank_solver::{Blank, BodyFault, Outcome, SurfacePoint};
+
+use crate::project::failure::Failure;
+use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::units::{self, length};
+use crate::solve::blank;
+use crate::solve::reasons;
+
+/// That a solid has no body, with ways out.
+pub(crate) fn refused(solid: &Solid, message: String, ways: &[&str]) -> Failure {
+    let ways = ways.iter().map(ToString::to_string).collect();
+    Failure::NotDone(vec![NotDone::new(NotDoneKind::NoBody, &solid.name, message).with(ways)])
+}
+
+/// Why a solid has no body, of what has kept it from being built.
+///
+/// # Errors
+/// If that was something else: the work was cancelled, or a file cannot be read.
+pub(crate) fn no_body(solid: &Solid, failure: Failure) -> Result<NotDone, Failure> {
+    match failure {
+        Failure::NotDone(mut told) if told.len() == 1 => Ok(told.remove(0)),
+        Failure::Input(reason) => Ok(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
+        other => Err(other),
+    }
+}
+
+/// A surface of a space of whose sample no point is solved: for which reasons, with how many points for each.
+pub(crate) fn unsolved(
+    job: &Job<'_>,
+    (solid, surface): (&Solid, &GeneratedSurface<'_>),
+    points: &[SurfacePoint],
+) -> Failure {
+    let reason = |point: &SurfacePoint| {
+        let word = match point.outcome {
+            Outcome::CutAway(_) => "cut away",
+            outcome => outcome.word(),
+        };
+        let told = match point.outcome {
+            // by up to another amount each
+            Outcome::Outside { unknown, .. } => surface.unknowns[unknown].name.clone(),
+            Outcome::NotConverged { .. } => String::new(),
+            outcome => reasons::of_point(job, surface, outcome),
+        };
+        format!("{word} {told}").trim_end().replace('_', " ")
+    };
+    let mut counted: Vec<(String, usize)> = Vec::new();
+    for reason in points.iter().map(reason) {
+        match counted.iter_mut().find(|(of, _)| *of == reason) {
+            Some((_, count)) => *count += 1,
+            None => counted.push((reason, 1)),
+        }
+    }
+    let mut details: Vec<String> = counted.iter().map(|(reason, count)| format!("{count}: {reason}")).collect();
+    details.push(format!(
+        "a surface that leaves nothing on the gear, as a rounding without a radius, is left out of `of:`, and its neighbours end in each \
+         other; of one that does, its sample has to lie where there are points of it ({} is sampled over {})",
+        surface.name,
+        surface.sample.as_ref().map_or_else(String::new, |sample| sample.labels.join(" and "))
+    ));
+    let message =
+        format!("`{}` bounds the spaces of `{}`, and no point of its sample is solved", surface.name, solid.name);
+    Failure::NotDone(vec![NotDone::new(NotDoneKind::NoBody, &solid.name, message).with(details)])
+}
+
+/// What charts that bound no body are told as; `names` are those of the charts.
+pub(crate) fn faulty(solid: &Solid, (blank, names): (&Blank, &[&str]), fault: BodyFault) -> Failure {
+    let segments = blank.outline.segments();
+    let name = |segment: usize| &segments[segment].name;
+    let of = &solid.name;
+    let from = if blank::arrangement(solid).is_closed() { "the axis" } else { "x = 0" };
+    match fault {
+        BodyFault::Pointed { overlap, share, .. } => refused(
+            solid,
+            format!(
+                "the teeth of `{of}` are pointed below the tip: their flanks overlap by {} at `{}`, {:.0} % of the way from `{}` to `{}`",
+                length(overlap),
+                name(blank.ends[1]),
+                100.0 * share,
+                name(blank.ends[0]),
+                name(blank.ends[2])
+            ),
+            &["a lower tip of the blank, or narrower spaces"],
+        ),
+        BodyFault::Overlap { overlap, rho } => refused(
+            solid,
+            format!("the spaces of `{of}` run into each other by {} at {rho:.3} mm from {from}", length(overlap)),
+            &["fewer teeth, or narrower spaces"],
+        ),
+        BodyFault::Crossed { charts: [first, second], place: [z, rho] } => refused(
+            solid,
+            format!(
+                "the spaces of `{of}` cross themselves: `{}` and `{}` meet at z {z:.4} mm, {rho:.4} mm from {from}, before what follows them in `of:`",
+                names[first], names[second]
+            ),
+            &[&crossed([first, second], names)],
+        ),
+        BodyFault::Through { segment, by } => refused(
+            solid,
+            format!("the spaces of `{of}` go {} through `{}` of its outline", length(by), name(segment)),
+            &[&format!("`{}` farther from the spaces by more than that, or spaces that are less deep", name(segment))],
+        ),
+        BodyFault::NoWall { segment, place: [z, rho] } => refused(
+            solid,
+            format!(
+                "the spaces of `{of}` reach `{}` of its outline at z {z:.4} mm, {rho:.4} mm from {from}: no wall is left between them",
+                name(segment)
+            ),
+            &[&format!("`{}` farther from the spaces, or spaces that are less deep", name(segment))],
+        ),
+    }
+}
+
+/// The way out where surfaces cross: they are neighbours, once what lies between them is gone.
+fn crossed([first, second]: [usize; 2], names: &[&str]) -> String {
+    let between: Vec<String> =
+        names[first.min(second) + 1..first.max(second)].iter().map(|name| format!("`{name}`")).collect();
+    match between[..] {
+        [] => "a tool whose surfaces end in each other there".to_string(),
+        _ => format!(
+            "leave {} out of `of:`, and they end where they meet; or a tool whose tip is wider there",
+            between.join(", ")
+        ),
+    }
+}
+
+/// How far unknowns would have to go beyond their ranges, and what these are.
+pub(crate) fn wider(surface: &GeneratedSurface<'_>, beyond: &[(usize, f64)]) -> (String, Vec<String>) {
+    let far = |(unknown, by): &(usize, f64)| {
+        let of = &surface.unknowns[*unknown];
+        format!("`{}` by {}", of.name, units::text(of.dimension, *by, 4))
+    };
+    let range = |(unknown, _): &(usize, f64)| {
+        let of = &surface.unknowns[*unknown];
+        let [low, high] = [of.low, of.high].map(|end| units::as_given(of.dimension, end));
+        let owner = match surface.generation.motions.contains(&of.variable) {
+            true => "the motion".to_string(),
+            false => format!("of {}", surface.generation.tool_name),
+        };
+        format!("`{}`, {owner}, has the range {low} .. {high}: a wider one reaches there", of.name)
+    };
+    let each: Vec<String> = beyond.iter().map(far).collect();
+    (format!("beyond the ranges of their unknowns, {}", each.join(", ")), beyond.iter().map(range).collect())
+}
