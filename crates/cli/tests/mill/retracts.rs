@@ -66,8 +66,10 @@ fn words(line: &str) -> HashMap<char, f64> {
 /// The points of the flank that are milled, in all spaces.
 fn points(csv: &Path) -> Vec<[f64; 3]> {
     let text = text_of(csv);
-    let rows =
-        text.lines().skip(1).map(|row| row.split(',').map(|number| number.parse::<f64>().unwrap()).collect::<Vec<_>>());
+    let rows = text
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|number| number.parse::<f64>().expect("a number")).collect::<Vec<_>>());
     let turned = |row: &Vec<f64>, space: u32| {
         let (s, c) = (std::f64::consts::TAU * f64::from(space) / 19.0).sin_cos();
         [c * row[4] - s * row[5], s * row[4] + c * row[5], row[6]]
