@@ -78,8 +78,8 @@ pub use measuring::{
     read_measured, write_grid_csv, write_grid_json,
 };
 pub use motion::{
-    AxisSeries, Dialect, MachineAxis, MotionRow, MotionTable, NcError, PassProgram, ProgramPass, Rates, Series,
-    WordsOf, write_motion_csv, write_motion_json, write_nc, write_passes,
+    AxisSeries, Dialect, MachineAxis, MotionRow, MotionTable, NcError, PassProgram, ProgramPass, ProgramRapid, Rates,
+    Series, WordsOf, write_motion_csv, write_motion_json, write_nc, write_passes,
 };
 pub use points::bands::{Banded, Surfaces, Taker};
 pub use points::conventions::sentences as conventions;

@@ -64,6 +64,7 @@ pub use milling::clear::{Clear, ClearProof};
 pub use milling::cusp::{Cusp, cusp, left_by_block, peak};
 pub use milling::distance::{Nearest, Obstacle, ToolBody};
 pub use milling::frame::{SurfaceFrame, SurfaceFrames};
+pub use milling::guard::{Guard, SpacePlace, Struck};
 pub use milling::height::{Lowest, NormalLine, lowest};
 pub use milling::outline::{Cutter, NoOutline, OutlinePiece, StraightSide};
 pub use milling::pose::{Bending, CutterPose, Lean, NoPose};

@@ -38,13 +38,13 @@ pub(crate) struct Mill {
     #[arg(long = "tool-centre-control", visible_alias = "tcp")]
     pub(crate) tool_centre_control: bool,
     /// Of the cutter along the surface, mm/min
-    #[arg(long, value_name = "MM/MIN", default_value = "600", value_parser = positive)]
+    #[arg(long, value_name = "MM/MIN", default_value = "600", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) feed: f64,
     /// Revolutions of the cutter a minute, for programs
-    #[arg(long, value_name = "RPM", value_parser = positive)]
+    #[arg(long, value_name = "RPM", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) spindle: Option<f64>,
     /// How far above a pass the cutter comes down and is lifted with feed
-    #[arg(long, value_name = "LENGTH", default_value = "5mm", value_parser = length)]
+    #[arg(long, value_name = "LENGTH", default_value = "5mm", value_parser = length, allow_hyphen_values = true)]
     pub(crate) approach: f64,
     /// Spaces of the work that a program mills, one after the other
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count(1..=1_000_000), allow_hyphen_values = true)]

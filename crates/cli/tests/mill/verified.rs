@@ -73,6 +73,13 @@ fn words_that_change_the_result_are_errors_with_their_line() {
                 ("G01 X1 X2", "`X` stands twice in one block"),
                 ("G0 G1 X1", "G0 and G1 stand in one block"),
                 ("G01 A-185", "A goes beyond its travel: to 185.000 deg as mill counts"),
+                ("G20 G01 Z300 F3", "Z goes beyond its travel: to 7620.000 mm as mill counts"),
+                ("(open G01 X1 F3", "`(` begins a remark that has no end in its line"),
+                ("G01 X#1 F3", "`X` has a parameter or an expression for a value, which is not read"),
+                ("G01 X[1+2] F3", "`X` has a parameter or an expression for a value"),
+                ("G01 X1", "has no `F`: with inverse-time feed (G93) each block that cuts needs its own"),
+                ("G01 X1 F0", "`F0` is no feed"),
+                ("G01 X1 F-5", "`F-5` is no feed"),
             ],
         ),
         (
@@ -86,6 +93,9 @@ fn words_that_change_the_result_are_errors_with_their_line() {
                 ("X=IC(5)", "`X=IC(5)` counts from where the axis stands"),
                 ("C=ACP(5)", "`C=ACP(5)` is not followed"),
                 ("G01 A3=0.1", "mill has no word `A3`"),
+                ("C=DC(-80.1)", "`C=DC(-80.1)` is no position of DC, which takes 0 .. 359.999"),
+                ("X=R1", "`X` has a parameter or an expression for a value"),
+                ("N100 A1: G01", "`:` ends a label"),
             ],
         ),
         (
@@ -204,15 +214,54 @@ fn what_goes_through_the_flank_is_told() {
     let place = cut(&lines, 4 * 10 + 4);
     assert!(lines[place].contains(&to(0.0)), "{} is at {}", lines[place], to(0.0));
     let fine = ["--tcp", "--rows", "15", "--columns", "161"];
-    for (motion, what) in [("G00", "the rapid in line"), ("G01", "line")] {
-        let dive = with(&lines, place + 1, &format!("{motion} {}\n{motion} {}", to(0.5), to(0.0)));
+    // the last of them is deeper than the ball is round
+    for (motion, what, by) in [("G00", "the rapid in line", 0.5), ("G01", "line", 0.5), ("G01", "line", 1.6)] {
+        let dive = with(&lines, place + 1, &format!("{motion} {}\n{motion} {}", to(by), to(0.0)));
         let (code, found) = verified(&spec, &out, &written(&out, "dive.mpf", &dive), &fine);
         let told = found["not_done"].to_string();
         assert_eq!(code, 3, "{told}");
-        assert!(told.contains("too_deep") && told.contains(&format!("\"{what} {} of ", place + 2)), "{told}");
+        // both blocks are as deep where they meet
+        let of_line = |line: usize| told.contains(&format!("\"{what} {line} of "));
+        assert!(told.contains("too_deep") && (of_line(place + 2) || of_line(place + 3)), "{told}");
         let depth = -found["verified"]["left"][1]["height_um"].as_f64().unwrap();
         // a point of the map is within 0.06 mm of the contact, where a ball of 1 mm is 2 um higher
-        assert!((495.0..500.2).contains(&depth), "{motion}: {depth}");
+        let deep = 1e3 * by;
+        assert!((deep - 5.0..deep + 0.2).contains(&depth), "{motion} {by}: {depth}");
     }
     assert_eq!(verified(&spec, &out, own.to_str().unwrap(), &fine).0, 0);
+}
+
+/// A rotary axis that goes round a whole turn in a block, as where an angle is written a turn off: what it cuts on the way is told with its line.
+#[test]
+fn a_turn_in_one_block_is_followed() {
+    let out = folder("mill_turn");
+    let spec = written(&out, "milled.chain", &sound());
+    let (_, mut lines) = program(&spec, &out, ("linuxcnc", "ngc"), &[]);
+    let place = cut(&lines, 14);
+    let at = |word: &str| word.strip_prefix('C').map(|at| format!("C{:.5}", at.parse::<f64>().unwrap() + 360.0));
+    lines[place] =
+        lines[place].split(' ').map(|word| at(word).unwrap_or(word.to_string())).collect::<Vec<_>>().join(" ");
+    let (code, found) = verified(&spec, &out, &written(&out, "turn.ngc", &lines.join("\n")), &[]);
+    let told = found["not_done"].to_string();
+    assert_eq!(code, 3, "{told}");
+    let of_line = |line: usize| told.contains(&format!("\"line {line} of "));
+    assert!(told.contains("too_deep") && (of_line(place + 1) || of_line(place + 2)), "{told}");
+    assert!(found["verified"]["left"][1]["height_um"].as_f64().unwrap() < -1000.0, "{found}");
+}
+
+/// A program does not say its unit, or its lines end as those of old machines: the one is told, the other read.
+#[test]
+fn what_a_program_leaves_open_is_told() {
+    let out = folder("mill_open");
+    let spec = written(&out, "milled.chain", &small());
+    let (_, lines) = program(&spec, &out, ("linuxcnc", "ngc"), &[]);
+    let open = lines.join("\n").replace("G21 ", "");
+    let (code, found) = verified(&spec, &out, &written(&out, "open.ngc", &open), &[]);
+    assert_eq!(code, 0, "{found}");
+    assert!(found["remarks"].to_string().contains("does not say its unit: lengths are read as mm"), "{found}");
+    let (code, found) = verified(&spec, &out, &written(&out, "ends.ngc", &lines.join("\r")), &[]);
+    assert_eq!(code, 0, "{found}");
+    assert!(!found["remarks"].to_string().contains("does not say its unit"), "{found}");
+    let (code, _, told) = mill(&spec, &out, &["--verify", &written(&out, "empty.ngc", "")]);
+    assert!(code == 1 && told.contains(":1: the program has no cutting block"), "{told}");
 }

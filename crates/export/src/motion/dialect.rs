@@ -117,6 +117,50 @@ impl Dialect {
         }
     }
 
+    /// The same to a position of the machine itself, whatever zero is set.
+    pub(super) fn rapid_of_machine(self, words: &str) -> String {
+        match self {
+            Dialect::Heidenhain => format!("L {words} R0 FMAX {}", self.of_machine()),
+            Dialect::Fanuc | Dialect::Siemens840D | Dialect::LinuxCnc => format!("G00 {} {words}", self.of_machine()),
+        }
+    }
+
+    /// The word of blocks whose positions are those of the machine.
+    pub(super) fn of_machine(self) -> &'static str {
+        match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => "G53",
+            Dialect::Siemens840D => "SUPA",
+            Dialect::Heidenhain => "M91",
+        }
+    }
+
+    /// What tool lengths have to be where words are positions of the axes.
+    pub(super) fn length_of_axes(self) -> &'static str {
+        match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => "none is called, the zero of Z is that of the tip",
+            Dialect::Siemens840D => "that of T1 D1 has to be 0, or D0 be set",
+            Dialect::Heidenhain => "L and R of tool 1 have to be 0 in its table",
+        }
+    }
+
+    /// What tool lengths have to be where words are the tip.
+    pub(super) fn length_of_tip(self) -> &'static str {
+        match self {
+            Dialect::Fanuc | Dialect::LinuxCnc => "H1 has to be the length of the tool up to its tip",
+            Dialect::Siemens840D => "T1 D1 has to have the length of the tool up to its tip",
+            Dialect::Heidenhain => "L of tool 1 has to be its length up to its tip",
+        }
+    }
+
+    /// What has to be set so that rapids go straight.
+    pub(super) fn straight_rapids(self) -> &'static str {
+        match self {
+            Dialect::Fanuc => ": bit LRP of parameter 1401 is 1",
+            Dialect::Siemens840D => ": RTLION",
+            Dialect::LinuxCnc | Dialect::Heidenhain => "",
+        }
+    }
+
     /// The word before a block that goes straight with feed, and whether it holds for the blocks behind.
     pub(super) fn straight(self) -> (&'static str, bool) {
         match self {

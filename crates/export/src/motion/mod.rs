@@ -12,5 +12,5 @@ pub use dialect::Dialect;
 pub(crate) use json::schema as json_schema;
 pub use json::write_motion_json;
 pub use nc::{NcError, write_nc};
-pub use passes::{PassProgram, ProgramPass, WordsOf, write_passes};
+pub use passes::{PassProgram, ProgramPass, ProgramRapid, WordsOf, write_passes};
 pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Rates, Series};

@@ -24,10 +24,16 @@ pub struct PassProgram {
     pub title: String,
     /// The axes, in the order of words.
     pub axes: Vec<MachineAxis>,
-    /// The axis that takes the cutter away from the work, and where it stands when the cutter is away.
-    pub retract: (usize, f64),
+    /// The axis that takes the cutter away from the work at the beginning, and where it stands then.
+    pub home: (usize, f64),
     /// The passes, in order.
     pub passes: Vec<ProgramPass>,
+    /// The same behind the last pass; nothing where the cutter is away already.
+    pub end: Option<(usize, f64)>,
+    /// Whether the spindle points along one axis all the time: rotary axes may then turn while the others stand.
+    pub is_upright: bool,
+    /// The frame of the work, and where the axes stand with the tip in its zero and rotary axes at zero.
+    pub zero: (String, Vec<f64>),
     /// Of the contact along the surface, mm/min.
     pub feed: f64,
     /// Revolutions of the cutter a minute.
@@ -50,15 +56,33 @@ pub enum WordsOf {
 pub struct ProgramPass {
     /// What it is, in one line.
     pub name: String,
+    /// The rapids to where the cutter comes down to, in order; the last one ends there.
+    pub approach: Vec<ProgramRapid>,
     /// The positions of the axes: where the cutter comes down to, the positions on the surface, where it is lifted to; mm and radians.
     pub rows: Vec<Vec<f64>>,
     /// The tips there, in the work, mm.
     pub tips: Vec<[f64; 3]>,
     /// The way of the cutter to each row but the first, mm.
     pub ways: Vec<f64>,
+    /// The rapids that take the cutter away, in order.
+    pub away: Vec<ProgramRapid>,
 }
 
-/// Writes passes: the cutter away from the work, the other axes to the pass, down, along, up and away; spindle and coolant about all.
+/// A rapid: all axes go straight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ProgramRapid {
+    /// The positions of all axes at its end; mm and radians.
+    pub row: Vec<f64>,
+    /// The tip there, in the work, mm.
+    pub tip: [f64; 3],
+    /// The axes that move.
+    pub moves: Vec<usize>,
+}
+
+/// Writes passes: the cutter away from the work, then for each its rapids, down, along, up and away; spindle and coolant about all.
+///
+/// With tool-centre control there is one zero, that of the work, from which rapids count, too. Only the first way out, for which nothing is known of
+/// where the cutter is, and that at the end are positions of the machine (`G53`, `SUPA`, `M91`).
 ///
 /// Blocks of axes have inverse-time feed (`G93`), so that the cutter goes along the surface with the feed whatever the rotary axes do; with
 /// tool-centre control (`TRAORI`, `G43.4`, `FUNCTION TCPM`) the feed is that of the tip. Heidenhain's language has no inverse-time feed: `F` of
@@ -69,7 +93,8 @@ pub struct ProgramPass {
 pub fn write_passes(program: &PassProgram, dialect: Dialect, out: &mut dyn Write) -> Result<(), WriteError> {
     check_axes(&program.axes, dialect)?;
     let travels = program.axes.iter().map(MachineAxis::printed_travel).collect();
-    let blocks = Blocks { program, dialect, travels, out: Vec::new() }.all()?;
+    let blocks =
+        Blocks { program, dialect, travels, has_tip_control: false, is_positioned: false, out: Vec::new() }.all()?;
     let step = dialect.numbering(blocks.len());
     for line in dialect.opening() {
         writeln!(out, "{line}")?;
@@ -99,16 +124,21 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
     ];
     head.extend(header.conventions.iter().map(|sentence| format!("- {}", one_line(sentence))));
     head.push("- lengths in mm, angles in degrees; positions are absolute, no rotary axis may roll over".to_owned());
-    head.push(match program.words {
-        WordsOf::Axes => "- words are positions of the axes, counted as the control does; X Y Z of the tip".to_owned(),
-        WordsOf::Tip => {
-            "- X Y Z of cutting blocks are the tip in the work; rotary words are positions of the axes".to_owned()
+    match program.words {
+        WordsOf::Axes => {
+            head.push("- words are positions of the axes, counted as the control does; X Y Z of the tip".to_owned());
+            head.push(format!("- F of cutting blocks: {}", dialect.feed_kind()));
+            head.push("- zero [G54]: where the axes of the machine count from".to_owned());
+            head.push(format!("- tool length as in the spec, no length is added: {}", dialect.length_of_axes()));
         }
-    });
-    if program.words == WordsOf::Axes {
-        head.push(format!("- F of cutting blocks: {}", dialect.feed_kind()));
+        WordsOf::Tip => head.extend(tip_zero(program, dialect)),
     }
-    head.push("- tool length as in the spec: no length is added".to_owned());
+    if !program.is_upright {
+        head.push(format!("- in rapids all axes go straight and arrive together{}", dialect.straight_rapids()));
+    }
+    if program.spindle.is_none() {
+        head.push("- no speed is said: the program does not start the spindle".to_owned());
+    }
     for (index, axis) in program.axes.iter().enumerate() {
         let values = program.passes.iter().flat_map(|pass| &pass.rows).map(|row| row[index]);
         let ends = [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)];
@@ -117,11 +147,34 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
     head
 }
 
+/// What the zero and the tool have to be, where words are the tip in the work.
+fn tip_zero(program: &PassProgram, dialect: Dialect) -> Vec<String> {
+    let (frame, row) = &program.zero;
+    let at = |is_rotary: bool| {
+        let some = program.axes.iter().zip(row).filter(move |(axis, _)| axis.is_rotary == is_rotary);
+        some.map(|(axis, position)| dialect.word(&axis.address, &axis.printed(*position))).collect::<Vec<_>>().join(" ")
+    };
+    vec![
+        "- X Y Z are the tip in the work, of rapids, too; rotary words are positions of the axes".to_owned(),
+        format!(
+            "- zero [G54]: the origin of {frame}; with {} it lies at {} of the machine as the spec counts",
+            at(true),
+            at(false)
+        ),
+        format!("- {} are positions of the machine itself, at the end of a travel", dialect.of_machine()),
+        format!("- {}", dialect.length_of_tip()),
+    ]
+}
+
 struct Blocks<'p> {
     program: &'p PassProgram,
     dialect: Dialect,
     /// Of each axis, as programs count it.
     travels: Vec<[f64; 2]>,
+    /// Whether the control keeps the tip on its way.
+    has_tip_control: bool,
+    /// Whether all axes have their positions.
+    is_positioned: bool,
     out: Vec<String>,
 }
 
@@ -135,43 +188,76 @@ impl Blocks<'_> {
         if self.dialect == Dialect::Heidenhain {
             // no axis moves before a tool is called, and the call itself takes the spindle away
             self.out.extend(tool);
-            self.retract()?;
+            self.alone(self.program.home)?;
         } else {
-            self.retract()?;
+            self.alone(self.program.home)?;
             self.out.extend(tool);
         }
         self.out.push("M08".to_owned());
         for pass in passes {
             self.pass(pass)?;
         }
+        self.tip_control(false);
+        if let Some(end) = self.program.end {
+            self.alone(end)?;
+        }
         self.out.extend(["M09", "M05", "M30"].map(str::to_owned));
         Ok(self.out)
     }
 
-    /// The cutter away from the work.
-    fn retract(&mut self) -> Result<(), NcError> {
-        let (axis, position) = self.program.retract;
+    /// One axis to a position of the machine, the cutter away from the work.
+    fn alone(&mut self, (axis, position): (usize, f64)) -> Result<(), NcError> {
         let axis = &self.program.axes[axis];
         let word = axis_word(axis, position, self.dialect, &|| "the clearance plane".to_owned())?;
-        self.out.push(self.dialect.rapid(&word));
+        self.out.push(match self.program.words {
+            WordsOf::Axes => self.dialect.rapid(&word),
+            WordsOf::Tip => self.dialect.rapid_of_machine(&word),
+        });
+        Ok(())
+    }
+
+    fn tip_control(&mut self, on: bool) {
+        if self.has_tip_control != on {
+            self.out.push(self.dialect.tip_control()[usize::from(!on)].to_owned());
+            self.has_tip_control = on;
+        }
+    }
+
+    fn rapid(&mut self, rapid: &ProgramRapid, name: &str) -> Result<(), NcError> {
+        let place = || format!("a rapid of {name}");
+        // the axes are where they can be, too
+        let axes = self.words_of_axes(&rapid.row, &place)?;
+        let of = |keep: &dyn Fn(usize) -> bool| {
+            rapid.moves.iter().filter(|axis| keep(**axis)).map(|axis| axes[*axis].clone()).collect::<Vec<_>>()
+        };
+        if self.program.words == WordsOf::Axes {
+            self.out.push(self.dialect.rapid(&of(&|_| true).join(" ")));
+            return Ok(());
+        }
+        let mut rotary = of(&|axis| self.program.axes[axis].is_rotary);
+        // a spindle that leans swings about its axes unless the control keeps its tip where it is
+        if !rotary.is_empty() && (self.program.is_upright || !self.is_positioned) {
+            self.tip_control(false);
+            self.out.push(self.dialect.rapid(&rotary.join(" ")));
+            rotary.clear();
+        }
+        self.tip_control(true);
+        self.is_positioned = true;
+        let words: Vec<String> = self.words_of_tip(rapid.tip).into_iter().chain(rotary).collect();
+        self.out.push(self.dialect.rapid(&words.join(" ")));
         Ok(())
     }
 
     fn pass(&mut self, pass: &ProgramPass) -> Result<(), NcError> {
         let program = self.program;
         self.out.extend(self.dialect.remark(&pass.name));
-        let last = pass.rows.len() - 1;
-        let first = self.axis_words(pass, 0)?;
-        let retract = program.retract.0;
-        let others = first.iter().enumerate().filter(|(axis, _)| *axis != retract).map(|(_, word)| word.as_str());
-        self.out.push(self.dialect.rapid(&others.collect::<Vec<_>>().join(" ")));
-        self.out.push(self.dialect.rapid(&first[retract]));
+        pass.approach.iter().try_for_each(|rapid| self.rapid(rapid, &pass.name))?;
         let (straight, _) = self.dialect.straight();
         match program.words {
             WordsOf::Axes => {
                 let inverse_time = self.dialect.inverse_time();
                 self.out.extend(inverse_time.map(|[on, _]| on.to_owned()));
-                for row in 1..=last {
+                for row in 1..pass.rows.len() {
                     let mut block = String::with_capacity(BLOCK);
                     block.push_str(straight);
                     self.push_axis_words(pass, row, &mut block)?;
@@ -182,15 +268,13 @@ impl Blocks<'_> {
                 self.out.extend(inverse_time.map(|[_, off]| off.to_owned()));
             }
             WordsOf::Tip => {
-                self.out.push(self.dialect.tip_control()[0].to_owned());
-                for row in 1..=last {
+                for row in 1..pass.rows.len() {
                     let words = self.tip_words(pass, row)?;
                     self.out.push(format!("{straight} {words} F{}", fixed(program.feed, 1)));
                 }
-                self.out.push(self.dialect.tip_control()[1].to_owned());
             }
         }
-        self.retract()
+        pass.away.iter().try_for_each(|rapid| self.rapid(rapid, &pass.name))
     }
 
     /// Each with a space before it.
@@ -204,19 +288,21 @@ impl Blocks<'_> {
         Ok(())
     }
 
-    fn axis_words(&self, pass: &ProgramPass, row: usize) -> Result<Vec<String>, NcError> {
-        let place = || format!("row {} of {}", row + 1, pass.name);
-        let axes = self.program.axes.iter().zip(&pass.rows[row]);
-        axes.map(|(axis, position)| axis_word(axis, *position, self.dialect, &place)).collect()
+    fn words_of_axes(&self, row: &[f64], place: &dyn Fn() -> String) -> Result<Vec<String>, NcError> {
+        let axes = self.program.axes.iter().zip(row);
+        axes.map(|(axis, position)| axis_word(axis, *position, self.dialect, place)).collect()
+    }
+
+    fn words_of_tip(&self, tip: [f64; 3]) -> Vec<String> {
+        let words = ["X", "Y", "Z"].into_iter().zip(tip);
+        words.map(|(address, at)| self.dialect.word(address, &fixed(at, DECIMALS_OF_TIPS))).collect()
     }
 
     fn tip_words(&self, pass: &ProgramPass, row: usize) -> Result<String, NcError> {
         // the axes are where they can be, too
-        let axes = self.axis_words(pass, row)?;
+        let axes = self.words_of_axes(&pass.rows[row], &|| format!("row {} of {}", row + 1, pass.name))?;
         let rotary = self.program.axes.iter().zip(axes).filter(|(axis, _)| axis.is_rotary).map(|(_, word)| word);
-        let tip = ["X", "Y", "Z"].into_iter().zip(pass.tips[row]);
-        let tip = tip.map(|(address, at)| self.dialect.word(address, &fixed(at, DECIMALS_OF_TIPS)));
-        Ok(tip.chain(rotary).collect::<Vec<String>>().join(" "))
+        Ok(self.words_of_tip(pass.tips[row]).into_iter().chain(rotary).collect::<Vec<String>>().join(" "))
     }
 
     /// The feed of a block of all axes, so that the contact has the feed of the program.

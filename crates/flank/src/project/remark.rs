@@ -137,6 +137,8 @@ pub enum RemarkKind {
     Continued,
     /// A cut ends before the passes of its cutter do.
     ShortCut,
+    /// A program does not say something that it needs.
+    Unsaid,
 }
 
 impl<Kind> Message<Kind> {

@@ -93,6 +93,11 @@ impl MillAxes {
         [x, y, z, -i, -j, -k]
     }
 
+    /// The direction of the first rotary axis as seen from the work, in its frame.
+    pub fn pole(&self) -> [f64; 3] {
+        self.pole
+    }
+
     /// The angle between the cutter's axis and the first rotary axis as seen from the work, radians: where it is zero, that axis is free.
     pub fn from_pole(&self, axis: [f64; 3]) -> f64 {
         let (axis, pole) = (Vector3::from(axis), Vector3::from(self.pole));

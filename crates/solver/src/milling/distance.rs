@@ -210,6 +210,24 @@ impl Obstacle {
         }
     }
 
+    /// The points that are looked at first.
+    pub fn points(&self) -> &[[f64; 3]] {
+        &self.points
+    }
+
+    /// What no place is nearer than; of what is farther than `limit`, any bound above that.
+    pub(crate) fn bound(&self, shape: &Shape, pose: &[f64; 6], limit: f64) -> f64 {
+        let distance = |point: usize| shape.distance(pose, self.points[point]);
+        let whole = &self.parts[0];
+        let far = distance(whole.middle) - whole.radius - self.reach;
+        if far >= limit {
+            return far;
+        }
+        let mut best = (f64::INFINITY, 0);
+        self.nearest_in(whole, &distance, &mut best);
+        best.0 - self.reach
+    }
+
     /// The place that is nearest to a body at a pose; `None` if none can be nearer than `limit`.
     pub fn nearest(&self, body: &ToolBody, pose: &[f64; 6], limit: f64) -> Option<Nearest> {
         let shape = body.shape();

@@ -7,8 +7,10 @@
 pub(crate) mod axes;
 pub(crate) mod clear;
 pub(crate) mod cusp;
+pub(crate) mod deep;
 pub(crate) mod distance;
 pub(crate) mod frame;
+pub(crate) mod guard;
 pub(crate) mod height;
 pub(crate) mod outline;
 pub(crate) mod pose;

@@ -1,5 +1,6 @@
 //! What all ways of a cutter together leave over a point of a surface.
 
+use crate::milling::deep::deepest;
 use crate::milling::distance::{Shape, ToolBody};
 use crate::milling::height::{NormalLine, lowest};
 use crate::milling::outline::{Cutter, OutlinePiece};
@@ -11,6 +12,16 @@ const NODES: usize = 13;
 const PIECES: usize = 32;
 /// How much farther than the ends of a piece its middle part may lie from the middle: pieces bend little.
 const BENT: f64 = 1.25;
+
+/// A point that lies deeper than this within the cutter, mm, is cut deep, and its height is looked for over the whole way ...
+const DEEP: f64 = 2e-3;
+/// ... of which that is tried at places so far apart, as a share of the radius of the ball about the cutter; at the least and at the most at so many.
+const TRIED: f64 = 0.25;
+const TRIES: [usize; 2] = [9, 1000];
+/// How far a shank is thought to go on above the outline, as a share of its radius there.
+const SHANK: f64 = 2.0;
+/// A height by steps is no news where it is lower by less than this, mm.
+const LOWER: f64 = 1e-7;
 
 /// A cutter on many ways. What it leaves over a point is the least of the heights at which it passes on any of them.
 #[derive(Clone, Debug)]
@@ -67,19 +78,15 @@ impl SweptCutter {
     }
 
     fn new(ways: Vec<(usize, PoseSeries)>, cutter: &Cutter) -> SweptCutter {
-        let ball = Ball::around(&cutter.pieces);
+        let body = body(&cutter.pieces);
+        let ball = Ball::around(&body.pieces);
         let way = |(number, series): (usize, PoseSeries)| {
             let middle = series.at(0.5);
             let moved = |share: f64| ball.moved(&middle, &series.at(share));
             let reach = BENT * moved(0.0).max(moved(1.0));
             Way { middle, reach, number, series }
         };
-        SweptCutter {
-            ways: ways.into_iter().map(way).collect(),
-            cutter: cutter.clone(),
-            body: body(&cutter.pieces).shape(),
-            ball,
-        }
+        SweptCutter { ways: ways.into_iter().map(way).collect(), cutter: cutter.clone(), body: body.shape(), ball }
     }
 
     /// What is left over a point along its normal; `None` if the cutter passes it on no way.
@@ -112,21 +119,42 @@ impl SweptCutter {
 
     fn lowest_on(&self, k: usize, line: &NormalLine) -> Option<LeftOver> {
         let way = &self.ways[k];
-        let found = lowest(&way.series, &self.cutter, line, 0.5)?;
-        Some(LeftOver { height: found.height, way: way.number })
+        let near = lowest(&way.series, &self.cutter, line, 0.5).map(|found| found.height);
+        let point = [line[0], line[1], line[2]];
+        let tries = ((2.0 * way.reach / (TRIED * self.ball.radius)) as usize).clamp(TRIES[0], TRIES[1]);
+        let is_within = |k: usize| {
+            let pose = way.series.at(k as f64 / (tries - 1) as f64);
+            self.body.distance(&pose, point) < -DEEP
+        };
+        let deep = if (0..tries).any(is_within) { deepest(&way.series, &self.cutter, line, 4 * tries) } else { None };
+        let deep = deep.map(|(height, _)| height).filter(|height| near.is_none_or(|near| *height < near - LOWER));
+        deep.or(near).map(|height| LeftOver { height, way: way.number })
     }
 }
 
-/// What lies within the pieces; an edge has its bottom, and a shank above it.
+/// What lies within the pieces: an edge has its bottom, and above all of them a shank goes on.
 fn body(pieces: &[OutlinePiece]) -> ToolBody {
     let of = |piece: &OutlinePiece| match *piece {
-        OutlinePiece::Arc { center: [rho, z], radius: 0.0, .. } => vec![
-            OutlinePiece::Line { from: [0.0, z], to: [rho, z] },
-            OutlinePiece::Line { from: [rho, z], to: [rho, z + 4.0 * rho] },
-        ],
+        OutlinePiece::Arc { center: [rho, z], radius: 0.0, .. } => {
+            vec![OutlinePiece::Line { from: [0.0, z], to: [rho, z] }]
+        }
         piece => vec![piece],
     };
-    ToolBody { pieces: pieces.iter().flat_map(of).collect() }
+    let upper = |piece: &OutlinePiece| match *piece {
+        OutlinePiece::Line { from, to } => {
+            if to[1] < from[1] {
+                from
+            } else {
+                to
+            }
+        }
+        OutlinePiece::Arc { center, radius, between: [_, end] } => {
+            [center[0] + radius * end.sin(), center[1] - radius * end.cos()]
+        }
+    };
+    let end = pieces.iter().map(upper).max_by(|a, b| a[1].total_cmp(&b[1]));
+    let shank = end.map(|[rho, z]| OutlinePiece::Line { from: [rho, z], to: [rho, z + SHANK * rho] });
+    ToolBody { pieces: pieces.iter().flat_map(of).chain(shank).collect() }
 }
 
 impl Ball {

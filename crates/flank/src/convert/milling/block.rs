@@ -36,8 +36,23 @@ pub(super) struct Block {
     pub(super) goes_to: Vec<Word>,
     /// Positions are those of the machine, not of the work.
     pub(super) is_elsewhere: bool,
+    /// The number of its feed.
+    pub(super) feed: Option<f64>,
+    /// Feeds are the inverse of the time of a block from here on, or are not.
+    pub(super) inverse_time: Option<bool>,
     /// The program ends.
     pub(super) ends: bool,
+}
+
+/// That no number stands behind an address.
+pub(super) fn no_number(address: &str, value: &str) -> String {
+    let is_read_elsewhere = |letter: char| letter.is_ascii_alphabetic() || matches!(letter, '#' | '[' | '<' | '(');
+    match value.trim_start_matches(['+', '-']).chars().next() {
+        Some(first) if is_read_elsewhere(first) => format!(
+            "`{address}` has a parameter or an expression for a value, which is not read: write the number that it stands for"
+        ),
+        _ => format!("`{address}` has no number"),
+    }
 }
 
 impl Block {

@@ -104,6 +104,25 @@ impl Clamping {
     }
 }
 
+/// That settings that may change are such.
+///
+/// # Errors
+/// See [`found`].
+pub(super) fn check(job: &Job<'_>, milling: &Milling<'_>, request: &MillRequest) -> Result<(), Failure> {
+    open(job, milling, request).map(|_| ())
+}
+
+fn open<'j, 'g>(
+    job: &'j Job<'g>,
+    milling: &Milling<'g>,
+    request: &MillRequest,
+) -> Result<Vec<OpenSetting<'j, 'g>>, Failure> {
+    if request.clamp.len() > MOST {
+        return Err(Failure::Request(format!("option `clamp`: at most {MOST} settings are searched at once")));
+    }
+    request.clamp.iter().map(|range| OpenSetting::new(job, milling, range, request)).collect()
+}
+
 /// The settings with the least rates over poses of a milling.
 ///
 /// # Errors
@@ -114,13 +133,7 @@ pub(super) fn found(
     poses: &[Vec<[f64; 6]>],
     request: &MillRequest,
 ) -> Result<(Option<Clamping>, Option<NotDone>), Failure> {
-    let mut open = Vec::new();
-    for range in &request.clamp {
-        open.push(OpenSetting::new(job, milling, range, request)?);
-    }
-    if open.len() > MOST {
-        return Err(Failure::Request(format!("option `clamp`: at most {MOST} settings are searched at once")));
-    }
+    let open = open(job, milling, request)?;
     let search = Search { job, milling, poses, open: &open };
     let as_given: Vec<f64> = open.iter().map(|setting| setting.parameter.value).collect();
     let Some((before, _)) = search.rates(&as_given) else { return Ok((None, None)) };

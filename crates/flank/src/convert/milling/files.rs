@@ -1,48 +1,98 @@
 //! What `flank mill` leaves in its folder: cutter locations, a table, NC programs.
 
-use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use flank_chain_dsl::{Dimension, Job};
 use flank_export::{Dialect, MachineAxis, PassProgram, ProgramPass, WordsOf, write_passes};
 
-use super::Milled;
 use super::left::LeftMap;
 use super::machine::Machine;
+use super::retract::{Retracts, retracts};
 use super::target::Target;
+use super::{Found, Milled, verify};
 use crate::convert::files::decimals;
 use crate::project::choices::{CutterFormat, NcDialect};
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
+use crate::project::remark::{NotDone, Remark, RemarkKind};
 use crate::project::requests::MillRequest;
 use crate::project::session::Session;
 use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve;
 
-/// Beyond the ends of its travel an axis without one goes away by this, mm.
-const AWAY: f64 = 100.0;
+/// A program: the extension of its file, and its text.
+pub(super) type ProgramText = (&'static str, String);
 
-/// Writes what is asked for and names it; programs only of what is `whole`.
+/// That the controls can do what is asked for.
 ///
 /// # Errors
-/// If a file cannot be written, or a control cannot do what a program needs.
+/// If one cannot.
+pub(super) fn check(request: &MillRequest) -> Result<(), Failure> {
+    if request.tool_centre_control && request.nc.contains(&NcDialect::LinuxCnc) {
+        let message =
+            "LinuxCNC keeps no tool on its way by itself: leave option `tool_centre_control` out for its programs";
+        return Err(Failure::Request(message.to_string()));
+    }
+    Ok(())
+}
+
+/// What programs do not say, or what was asked for of them while there are none.
+pub(super) fn unsaid(target: &Target<'_, '_>, request: &MillRequest, programs: &[ProgramText]) -> Vec<Remark> {
+    let remark = |message: &str, way: &str| {
+        Remark::new(RemarkKind::Unsaid, &target.milling.name, message).with(vec![way.to_string()])
+    };
+    let still = !programs.is_empty() && request.spindle.is_none();
+    let still = still.then(|| {
+        remark(
+            "the program does not start the spindle: no speed is said",
+            "option `spindle` says how fast the cutter turns",
+        )
+    });
+    let unwritten = request.tool_centre_control && request.nc.is_empty() && request.verify.is_none();
+    let unwritten = unwritten.then(|| {
+        remark(
+            "option `tool_centre_control` makes blocks straight in the work, and no program is asked for",
+            "option `nc` names the controls that programs are for",
+        )
+    });
+    still.into_iter().chain(unwritten).collect()
+}
+
+/// The programs that are asked for; none where a rapid of them would cut into the work, and that.
+///
+/// # Errors
+/// If a control cannot do what a program needs.
+pub(super) fn programs(
+    job: &Job<'_>,
+    target: &Target<'_, '_>,
+    found: &Found<'_, '_>,
+    (request, origin, session): (&MillRequest, &Origin, Session<'_>),
+) -> Result<(Vec<ProgramText>, Option<NotDone>), Failure> {
+    let Some(machine) = found.milled.machine.as_ref().filter(|_| !request.nc.is_empty()) else {
+        return Ok((Vec::new(), None));
+    };
+    let passes = program(job, target, found, machine, (request, origin));
+    let text = |dialect: &NcDialect| program_text(&passes, *dialect);
+    let texts = request.nc.iter().map(text).collect::<Result<Vec<ProgramText>, Failure>>()?;
+    session.check()?;
+    // the controls differ by their words only
+    let refused = texts.first().map(|(_, text)| verify::rapids(text, target, found, machine)).transpose()?.flatten();
+    Ok(if refused.is_some() { (Vec::new(), refused) } else { (texts, None) })
+}
+
+/// Writes what is asked for and names it.
+///
+/// # Errors
+/// If a file cannot be written.
 pub(super) fn write(
     job: &Job<'_>,
     target: &Target<'_, '_>,
     (milled, (map, read)): (&Milled<'_, '_>, (&LeftMap, Option<&LeftMap>)),
     (request, origin, session): (&MillRequest, &Origin, Session<'_>),
-    is_whole: bool,
+    programs: &[ProgramText],
 ) -> Result<Vec<String>, Failure> {
     let name = format!("{}.{}", job.name, target.milling.name);
-    let programs = match &milled.machine {
-        Some(machine) if is_whole && !request.nc.is_empty() => {
-            let program = program(job, target, milled, machine, (request, origin))?;
-            let text = |dialect: &NcDialect| program_text(&program, *dialect, request);
-            request.nc.iter().map(text).collect::<Result<Vec<_>, Failure>>()?
-        }
-        _ => Vec::new(),
-    };
     let mut folder = Folder::at(&request.out, origin, session.monitor());
     for format in &request.format {
         match format {
@@ -55,7 +105,7 @@ pub(super) fn write(
         let dataset = map.dataset(job, target, header(), read);
         folder.data(&format!("{name}.left"), &dataset.surfaces(), &request.map)?;
     }
-    for (extension, text) in &programs {
+    for (extension, text) in programs {
         folder.text(&format!("{name}.{extension}"), text)?;
     }
     folder.finish()
@@ -137,40 +187,19 @@ fn lifted(row: &[f64; 6], by: f64) -> [f64; 6] {
     [x + by * i, y + by * j, z + by * k, i, j, k]
 }
 
-/// The same pose, turned about z.
-fn indexed(row: &[f64; 6], angle: f64) -> [f64; 6] {
-    let (s, c) = angle.sin_cos();
-    let [x, y, z, i, j, k] = *row;
-    [c * x - s * y, s * x + c * y, z, c * i - s * j, s * i + c * j, k]
-}
-
 fn program(
     job: &Job<'_>,
     target: &Target<'_, '_>,
-    milled: &Milled<'_, '_>,
+    found: &Found<'_, '_>,
     machine: &Machine<'_, '_>,
     (request, origin): (&MillRequest, &Origin),
-) -> Result<PassProgram, Failure> {
+) -> PassProgram {
     let milling = target.milling;
-    let solid = job.solids.iter().find(|solid| solid.space.contains(&milling.surface));
-    if request.spaces > 1 && solid.is_none() {
-        let message = format!(
-            "option `spaces {}`: nothing says how many spaces the work has: name {} in a `solid` of the job",
-            request.spaces,
-            target.name()
-        );
-        return Err(Failure::Request(message));
-    }
-    let teeth = solid.map_or(1, |solid| solid.teeth);
-    if request.spaces > teeth {
-        let message = format!("option `spaces {}`: the work has {teeth}", request.spaces);
-        return Err(Failure::Request(message));
-    }
-    let mut passes = Vec::new();
+    let mut poses = Vec::new();
     for space in 0..request.spaces {
-        let turn = TAU * f64::from(space) / f64::from(teeth);
-        for (pass, poses) in milled.poses.iter().enumerate() {
-            let mut row: Vec<[f64; 6]> = poses.iter().map(|pose| indexed(pose, turn)).collect();
+        let place = found.spaces.place(space);
+        for (pass, along) in found.milled.poses.iter().enumerate() {
+            let mut row: Vec<[f64; 6]> = along.iter().map(|pose| place.placed(pose)).collect();
             let ends = [lifted(&row[0], request.approach), lifted(&row[row.len() - 1], request.approach)];
             row.insert(0, ends[0]);
             row.push(ends[1]);
@@ -179,14 +208,21 @@ fn program(
             } else {
                 format!("pass {}", pass + 1)
             };
-            passes.push(ProgramPass {
-                name,
-                rows: machine.axes.along(&row),
-                tips: row.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
-                ways: row.windows(2).map(|pair| super::distance(&pair[0], &pair[1]).max(1e-9)).collect(),
-            });
+            poses.push((name, machine.axes.along(&row), row));
         }
     }
+    let rows: Vec<&[Vec<f64>]> = poses.iter().map(|(_, rows, _)| rows.as_slice()).collect();
+    let hull = found.spaces.hull(&found.milled.lattice, &found.guarded);
+    let Retracts { home, end, is_upright, of_passes } = retracts(machine, &rows, (hull, request.tool_centre_control));
+    let passes = poses.into_iter().zip(of_passes).map(|((name, rows, poses), [approach, away])| ProgramPass {
+        name,
+        approach,
+        rows,
+        tips: poses.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
+        ways: poses.windows(2).map(|pair| super::distance(&pair[0], &pair[1]).max(1e-9)).collect(),
+        away,
+    });
+    let passes = passes.collect();
     let axes: Vec<MachineAxis> = machine
         .free
         .iter()
@@ -201,54 +237,23 @@ fn program(
         })
         .collect();
     let title = format!("milling {}: {} with {}", milling.name, target.name(), milling.cutter_name);
-    Ok(PassProgram {
+    PassProgram {
         header: solve::header(&[job], &request.jobs, origin),
         title,
-        retract: retract(machine, &passes),
+        home,
+        end,
+        is_upright,
+        zero: (target.frame().to_string(), machine.at_zero()),
         axes,
         passes,
         feed: request.feed,
         spindle: request.spindle,
         words: if request.tool_centre_control { WordsOf::Tip } else { WordsOf::Axes },
-    })
-}
-
-/// The linear axis that moves the cutter most along its own axis, and its end away from the work.
-fn retract(machine: &Machine<'_, '_>, passes: &[ProgramPass]) -> (usize, f64) {
-    let row = &passes[0].rows[0];
-    let here = machine.axes.pose(row);
-    let along = |axis: usize| {
-        let mut moved = row.clone();
-        moved[axis] += 1.0;
-        let there = machine.axes.pose(&moved);
-        (0..3).map(|k| (there[k] - here[k]) * here[3 + k]).sum::<f64>()
-    };
-    let linear = (0..machine.free.len()).filter(|axis| !machine.axes.is_rotary(*axis));
-    let (axis, rate) = linear
-        .map(|axis| (axis, along(axis)))
-        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-        .expect("a machine with axes in closed form has linear ones");
-    let positions = passes.iter().flat_map(|pass| &pass.rows).map(|row| row[axis]);
-    let position = match (machine.free[axis].travel, rate > 0.0) {
-        (Some((_, high)), true) => high,
-        (Some((low, _)), false) => low,
-        (None, true) => positions.fold(f64::NEG_INFINITY, f64::max) + AWAY,
-        (None, false) => positions.fold(f64::INFINITY, f64::min) - AWAY,
-    };
-    (axis, position)
+    }
 }
 
 /// A program's extension and text.
-fn program_text(
-    program: &PassProgram,
-    dialect: NcDialect,
-    request: &MillRequest,
-) -> Result<(&'static str, String), Failure> {
-    if request.tool_centre_control && dialect == NcDialect::LinuxCnc {
-        let message =
-            "LinuxCNC keeps no tool on its way by itself: leave option `tool_centre_control` out for its programs";
-        return Err(Failure::Request(message.to_string()));
-    }
+fn program_text(program: &PassProgram, dialect: NcDialect) -> Result<ProgramText, Failure> {
     let dialect = Dialect::from(dialect);
     let mut text = Vec::new();
     write_passes(program, dialect, &mut text).map_err(|error| error.to_string())?;

@@ -73,7 +73,7 @@ impl MilledFlank {
 
     fn of_worked(worked: Worked<'_, '_>) -> Result<MilledFlank, Vec<NotDone>> {
         let Worked { target, result, found } = worked;
-        let Some(Found { cutter, fields, milled, swept, map }) = found else { return Err(result.not_done) };
+        let Some(Found { cutter, fields, milled, swept, map, .. }) = found else { return Err(result.not_done) };
         let most = milled.plan.cusp.or_else(|| map.highest());
         let (shares, passes, highest) = (milled.plan.shares[0].clone(), milled.ways, most.map_or(0.0, |at| at.height));
         let (labels, stock, not_done) = (target.labels(), target.milling.stock, result.not_done);

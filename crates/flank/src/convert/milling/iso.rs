@@ -1,12 +1,12 @@
 //! Lines of ISO 6983 as Fanuc, LinuxCNC and Siemens write them.
 
-use super::block::{Block, Motion, Word};
+use super::block::{Block, Motion, Word, no_number};
 
 /// G words, tenfold, that leave the nominal way of the cutter as it is: dwells, planes, ends of modes that are errors to begin, feed modes, exact
 /// stops, corners within a tolerance, and the first zero, which positions count from.
-const STILL: [i64; 27] = [
+const STILL: [i64; 24] = [
     51, 90, 170, 180, 190, 400, 540, 610, 611, 640, 6010, 6020, 6030, 6410, 6420, 6430, 6440, 6450, 670, 690, 800, 900,
-    930, 940, 950, 970, 980,
+    970, 980,
 ];
 /// G words, tenfold, with which P and Q say how.
 const WITH_PARAMETERS: [i64; 3] = [40, 51, 640];
@@ -44,6 +44,7 @@ pub(super) fn line(line: &str) -> Result<Block, String> {
     if codes.contains(&40) {
         // words of a dwell are times
         block.goes_to.clear();
+        block.feed = None;
     }
     Ok(block)
 }
@@ -76,7 +77,11 @@ fn statement(name: &str) -> Result<Block, String> {
 fn of_word(block: &mut Block, word: Word, codes: &[i64]) -> Result<(), String> {
     let has = |known: &[i64]| codes.iter().any(|code| known.contains(code));
     match (word.address.as_str(), word.value) {
-        ("N" | "O" | ":" | "F" | "S" | "T", _) => Ok(()),
+        ("F", value) => {
+            block.feed = Some(value);
+            Ok(())
+        }
+        ("N" | "O" | ":" | "S" | "T", _) => Ok(()),
         ("P" | "Q", _) if has(&WITH_PARAMETERS) => Ok(()),
         ("H", _) if has(&[TIP_CONTROL]) => Ok(()),
         ("G", value) => preparatory(block, value),
@@ -112,6 +117,8 @@ fn preparatory(block: &mut Block, value: f64) -> Result<(), String> {
         TIP_CONTROL => block.tip_control = Some(true),
         490 => block.tip_control = Some(false),
         530 => block.is_elsewhere = true,
+        930 => block.inverse_time = Some(true),
+        940 | 950 => block.inverse_time = Some(false),
         code if STILL.contains(&code) => {}
         code => return Err(format!("G{value} {}", why_not(code))),
     }
@@ -145,7 +152,10 @@ fn parts(line: &str) -> Result<Vec<Part>, String> {
         let (first, second) = (letters.next(), letters.next());
         match first {
             None | Some(';') => return Ok(parts),
-            Some('(') => rest = rest.split_once(')').map_or("", |(_, behind)| behind),
+            Some('(') => {
+                let unclosed = "`(` begins a remark that has no end in its line: close it with `)`";
+                rest = rest.split_once(')').ok_or(unclosed)?.1;
+            }
             Some('/') => {
                 return Err(
                     "`/` marks a block that is skipped or not as a switch says: take the `/` or the block away"
@@ -210,7 +220,10 @@ fn word(text: &str) -> Result<(Word, &str), String> {
 fn number<'t>(address: &str, text: &'t str) -> Result<(f64, &'t str), String> {
     let is_part = |letter: char| letter.is_ascii_digit() || matches!(letter, '.' | '-' | '+');
     let (number, behind) = text.split_at(text.find(|letter| !is_part(letter)).unwrap_or(text.len()));
-    let value = number.parse().map_err(|_| format!("`{address}{number}` has no number"))?;
+    let value = number.parse().map_err(|_| match address {
+        ":" => "`:` ends a label, which only jumps need: leave the label out".to_string(),
+        _ => no_number(address, if number.is_empty() { behind } else { number }),
+    })?;
     Ok((value, behind))
 }
 
@@ -231,6 +244,9 @@ fn assigned<'t>(address: &str, text: &'t str) -> Result<(Word, &'t str), String>
     let word = Word::new(address, value);
     match how {
         "AC" => Ok((word, behind)),
+        "DC" if !(0.0..360.0).contains(&value) => Err(format!(
+            "`{address}=DC({value})` is no position of DC, which takes 0 .. 359.999: write it within these, or with AC"
+        )),
         "DC" => Ok((Word { by_shorter_way: true, ..word }, behind)),
         "IC" => Err(format!(
             "`{address}=IC({value})` counts from where the axis stands: only absolute positions are followed"

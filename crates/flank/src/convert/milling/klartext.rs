@@ -1,6 +1,6 @@
 //! Lines of Heidenhain's Klartext.
 
-use super::block::{Block, Motion, Word};
+use super::block::{Block, Motion, Word, no_number};
 
 /// Lines that move no axis of their own accord; cycle 32 says how near a control keeps to corners.
 const STILL: [&str; 5] = ["TOOL DEF", "BLK FORM", "CYCL DEF 32.", "CYCL DEF 32 ", "* -"];
@@ -84,7 +84,7 @@ fn straight(text: &str) -> Result<Block, String> {
             ("R", "0") => {}
             ("R", _) => return Err(format!("`{word}` compensates the radius: only R0 is followed")),
             ("F", "MAX") => block.motion = Some(Motion::Rapid),
-            ("F", _) => {}
+            ("F", feed) => block.feed = feed.replace(',', ".").parse().ok(),
             ("M", "91" | "92") => block.is_elsewhere = true,
             ("M", "128") => block.tip_control = Some(true),
             ("M", "129") => block.tip_control = Some(false),
@@ -95,7 +95,7 @@ fn straight(text: &str) -> Result<Block, String> {
             }
             _ => {
                 // some controls write a decimal comma
-                let value = number.replace(',', ".").parse().map_err(|_| format!("`{word}` has no number"))?;
+                let value = number.replace(',', ".").parse().map_err(|_| no_number(address, number))?;
                 match address {
                     "M" => block.auxiliary(value)?,
                     _ => block.goes_to(Word::new(address, value))?,

@@ -79,6 +79,16 @@ impl<'p, 'g> Machine<'p, 'g> {
         Machine { axes: self.axes.on_best_elbow(passes), ..self }
     }
 
+    /// Where the axes stand with the tip in the zero of the work, while words of rotary ones say zero.
+    pub(super) fn at_zero(&self) -> Vec<f64> {
+        let unsaid = |(k, axis): (usize, &&Axis<'g>)| match (self.axes.is_rotary(k), axis.word.reversed) {
+            (true, true) => axis.word.offset,
+            (true, false) => -axis.word.offset,
+            (false, _) => 0.0,
+        };
+        self.axes.with_tip(&self.free.iter().enumerate().map(unsaid).collect::<Vec<f64>>(), [0.0; 3])
+    }
+
     /// How far the words of an axis are rounded, mm or radians: half of the last decimal.
     pub(super) fn rounding(&self, axis: usize) -> f64 {
         let own = self.free[axis];
@@ -97,6 +107,40 @@ impl<'p, 'g> Machine<'p, 'g> {
         (0..axes.len()).map(by_axis).sum()
     }
 
+    /// That the axes do not bring the cutter to one of some poses, whatever their travels; the one that is farthest off is told.
+    pub(super) fn unreached(&self, poses: &[[f64; 6]], place: impl Fn(usize) -> String) -> Option<NotDone> {
+        let off = |k: usize| {
+            let row = self.axes.along(&poses[k..=k]).remove(0);
+            let reached = self.axes.pose(&row);
+            let by = (0..6).map(|i| (reached[i] - poses[k][i]).abs()).fold(0.0, f64::max);
+            // where an axis would have to stand at no real angle
+            if reached.iter().all(|x| x.is_finite()) { by } else { f64::INFINITY }
+        };
+        let reach = self.axes.reach();
+        let angle = |k: usize| reach.as_ref().map_or(0.0, |reach| reach.angle(&poses[k]));
+        let beyond =
+            |k: usize| reach.as_ref().map_or(0.0, |reach| (reach.ends[0] - angle(k)).max(angle(k) - reach.ends[1]));
+        let missed = (0..poses.len()).filter(|k| off(*k) > MET);
+        let worst = missed.max_by(|a, b| beyond(*a).total_cmp(&beyond(*b)))?;
+        let name = &self.machine.name;
+        let why = match &reach {
+            Some(reach) if beyond(worst) > 0.0 => format!(
+                "it would stand {:.3} deg from the axis of {}, and {:.3} deg .. {:.3} deg are reached",
+                angle(worst).to_degrees(),
+                self.free[reach.first].name,
+                reach.ends[0].to_degrees(),
+                reach.ends[1].to_degrees()
+            ),
+            _ => format!(
+                "{:.3} deg from where a rotary axis is free",
+                self.axes.angle_from_pole(&poses[worst]).to_degrees()
+            ),
+        };
+        let message = format!("the axes of {name} cannot bring the spindle to its direction at {}", place(worst));
+        let way = "clamp the work at another angle, or lean the cutter otherwise with `lead` and `tilt`".to_string();
+        Some(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![why, way]))
+    }
+
     /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.
     pub(super) fn faults(
         &self,
@@ -106,18 +150,8 @@ impl<'p, 'g> Machine<'p, 'g> {
     ) -> Vec<NotDone> {
         let mut found = Vec::new();
         let name = &self.machine.name;
-        let off = |k: &usize| {
-            let reached = self.axes.pose(&rows[*k]);
-            !(0..6).all(|i| (reached[i] - poses[*k][i]).abs() <= MET)
-        };
-        if let Some(k) = (0..rows.len()).find(off) {
-            let message = format!("{name} does not bring the cutter to its pose at {}", place(k));
-            let why = format!(
-                "{:.3} deg from where a rotary axis is free",
-                self.axes.angle_from_pole(&poses[k]).to_degrees()
-            );
-            found.push(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![why]));
-            return found;
+        if let Some(missed) = self.unreached(poses, &place) {
+            return vec![missed];
         }
         for axis in 0..self.free.len() {
             let Some((low, high)) = self.free[axis].travel else { continue };
@@ -159,6 +193,23 @@ impl<'p, 'g> Machine<'p, 'g> {
     }
 }
 
+/// The directions in which rotary axes hold a cutter.
+struct Reach {
+    /// The rotary axis that does not change the angle from its own direction: the first as seen from the work.
+    first: usize,
+    /// Its direction in the work.
+    pole: Vector3<f64>,
+    /// Between which angles from that the other one brings the cutter's axis, radians.
+    ends: [f64; 2],
+}
+
+impl Reach {
+    fn angle(&self, pose: &[f64; 6]) -> f64 {
+        let axis = Vector3::new(pose[3], pose[4], pose[5]);
+        axis.cross(&self.pole).norm().atan2(axis.dot(&self.pole))
+    }
+}
+
 /// How far a point of the cutter moves from one pose to another, at the most, mm; it is no farther than `reach` from the tip.
 pub(super) fn moved_by(from: &[f64; 6], to: &[f64; 6], reach: f64) -> f64 {
     let turned = (3..6).map(|k| (from[k] - to[k]).powi(2)).sum::<f64>().sqrt();
@@ -186,6 +237,28 @@ impl FreeAxes {
         let [first, second] = [0, 1].map(cost);
         let elbow = usize::from(second.0 < first.0 || second.0 == first.0 && second.1 < first.1);
         FreeAxes { elbow, ..self }
+    }
+
+    /// Where the cutter's axis goes; `None` unless one of the rotary axes leaves its angle from the pole as it is.
+    fn reach(&self) -> Option<Reach> {
+        const THIRDS: [f64; 3] = [0.0, TAU / 3.0, 2.0 * TAU / 3.0];
+        let pole = Vector3::from(self.closed.pole());
+        let pole = if pole.z < 0.0 { -pole } else { pole };
+        // over a turn of an axis the cosine of that angle is a mean and a swing
+        let swing = |axis: usize| {
+            let cosines = THIRDS.map(|at| {
+                let mut row = vec![0.0; self.is_rotary.len()];
+                row[axis] = at;
+                let [_, _, _, i, j, k] = self.closed.pose(&row);
+                pole.dot(&Vector3::new(i, j, k))
+            });
+            let mean = cosines.iter().sum::<f64>() / 3.0;
+            (mean, (cosines.iter().map(|x| (x - mean).powi(2)).sum::<f64>() * 2.0 / 3.0).sqrt())
+        };
+        let first = self.rotary().min_by(|a, b| swing(*a).1.total_cmp(&swing(*b).1))?;
+        let (mean, by) = swing(self.rotary().find(|axis| *axis != first)?);
+        let ends = [mean + by, mean - by].map(|cosine| cosine.clamp(-1.0, 1.0).acos());
+        (swing(first).1 < MET).then_some(Reach { first, pole, ends })
     }
 
     pub(super) fn rotary(&self) -> impl Iterator<Item = usize> + '_ {

@@ -6,6 +6,7 @@ mod cutter;
 pub(crate) mod drawn;
 mod files;
 pub(crate) mod flank;
+mod guard;
 mod iso;
 mod klartext;
 mod left;
@@ -17,8 +18,10 @@ mod plan;
 mod program;
 mod proof;
 pub(crate) mod result;
+mod retract;
 pub(crate) mod setup;
 pub(crate) mod side;
+mod spaces;
 mod target;
 mod text;
 mod verify;
@@ -34,9 +37,11 @@ use rayon::prelude::*;
 use self::cutter::MillingCutter;
 use self::left::LeftMap;
 use self::machine::{Machine, NoMachine};
+use self::obstacles::{Guarded, KeptClear};
 use self::patch::Lattice;
 use self::plan::{LeftAt, Plan, Planner};
 use self::result::{BallAt, CurvatureAt, HeightLeft, MillResult, MilledAxis};
+use self::spaces::Spaces;
 use self::target::{Fields, Target};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
@@ -128,6 +133,9 @@ struct Found<'j, 'g> {
     milled: Milled<'j, 'g>,
     swept: SweptCutter,
     map: LeftMap,
+    /// What the cutter keeps clear of.
+    guarded: Vec<Guarded<'j>>,
+    spaces: Spaces,
 }
 
 /// Plans a milling and measures what it leaves; nothing is written or read back.
@@ -141,6 +149,9 @@ pub(crate) fn worked<'j, 'g>(
     session: Session<'_>,
 ) -> Result<Worked<'j, 'g>, Failure> {
     let cutter = MillingCutter::of_milling(job, milling)?;
+    Spaces::check(job, milling, request.spaces)?;
+    clamp::check(job, milling, request)?;
+    files::check(request)?;
     let _working = session.begin(format!("milling {}", milling.name))?;
     let target = Target::new(job, milling, session);
     let mut result = nothing(job, &target, request);
@@ -151,14 +162,15 @@ pub(crate) fn worked<'j, 'g>(
             format!("{} has no axes in closed form, and programs are made of them", job.machines[milling.machine].name);
         result.not_done.push(NotDone::new(NotDoneKind::NoClosedForm, &milling.name, message));
     }
-    let found = target.fields(&cutter).and_then(|fields| match milling.spacing {
-        PassSpacing::Side(free) => {
-            let (milled, left) = side::milled(&target, &cutter, machine, &fields, (request, free))?;
-            result.side = Some(left);
-            Ok((fields, milled))
-        }
-        _ => milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)),
-    });
+    let found =
+        target.has_room(&cutter).and_then(|()| target.fields(&cutter)).and_then(|fields| match milling.spacing {
+            PassSpacing::Side(free) => {
+                let (milled, left) = side::milled(&target, &cutter, machine, &fields, (request, free))?;
+                result.side = Some(left);
+                Ok((fields, milled))
+            }
+            _ => milled(&target, &cutter, machine, &fields, request).map(|milled| (fields, milled)),
+        });
     let (fields, milled) = match found {
         Ok(found) => found,
         Err(missing) => {
@@ -174,14 +186,15 @@ pub(crate) fn worked<'j, 'g>(
         result.not_done.extend(missed);
         session.check()?;
     }
-    let (kept, missed) = obstacles::kept(job, &target, &milled, (request, session))?;
-    result.clearances = kept;
+    let KeptClear { guarded, clearances, missed } = obstacles::kept(job, &target, &milled, (request, session))?;
+    result.clearances = clearances;
     result.not_done.extend(missed);
     let swept = SweptCutter::of_passes(&milled.ways, &cutter.cutting);
     let map = LeftMap::of_cutter(&target, &fields, &swept, [request.rows as usize, request.columns as usize]);
     session.check()?;
     result.map = Some(map.result(&target));
-    Ok(Worked { target, result, found: Some(Found { cutter, fields, milled, swept, map }) })
+    let spaces = Spaces::of_job(job, milling);
+    Ok(Worked { target, result, found: Some(Found { cutter, fields, milled, swept, map, guarded, spaces }) })
 }
 
 fn of_milling(
@@ -202,8 +215,14 @@ fn of_milling(
         let is_whole = result.not_done.is_empty();
         result.not_done.extend(map.missing(&target));
         result.not_done.extend(read.iter().flat_map(|read| read.missed(&target)));
+        let asked = (request, origin, session);
+        let (programs, refused) =
+            if is_whole { files::programs(job, &target, found, asked)? } else { (Vec::new(), None) };
+        result.not_done.extend(refused);
         let maps = (map, read.as_ref().map(|read| &read.map));
-        result.files = files::write(job, &target, (milled, maps), (request, origin, session), is_whole)?;
+        result.files = files::write(job, &target, (milled, maps), asked, &programs)?;
+        result.remarks.extend(files::unsaid(&target, request, &programs));
+        result.remarks.extend(read.iter().flat_map(|read| read.assumed(&target)));
     }
     Ok(MillResult {
         not_done: origin.located(&[job], result.not_done),
@@ -241,6 +260,13 @@ fn milled<'p, 'g>(
         })
         .collect();
     let machine = machine.map(|machine| machine.on_best_elbow(&few));
+    if let Some(machine) = &machine {
+        let places: Vec<[f64; 2]> = fields.lattice.each().map(|(shares, _)| shares).collect();
+        let poses: Vec<[f64; 6]> = places.iter().map(|[pass, along]| fields.of_pass(0).at([*pass, *along])).collect();
+        if let Some(missed) = machine.unreached(&poses, |k| target.place(places[k])) {
+            return Err(missed);
+        }
+    }
     let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
     let plan = Planner { target, fields, cutter, axes }.plan()?;
     let lattice = target.lattice(plan.shares.clone())?;

@@ -6,7 +6,7 @@ use flank_chain_dsl::{
 use flank_export::fixed;
 use flank_expr::geometry::Chain;
 use flank_expr::{ScalarEvaluator, Tape};
-use flank_solver::{Chart, Obstacle, PoseField, ToolBody};
+use flank_solver::{Chart, Cutter, Obstacle, PoseField, ToolBody};
 use rayon::prelude::*;
 
 use super::Milled;
@@ -28,17 +28,39 @@ pub(super) struct Kept<'k> {
     pub(super) place: Box<dyn Fn([f64; 2]) -> String + 'k>,
 }
 
+/// The same with the part of the cutter that does.
+pub(super) struct Guarded<'k> {
+    pub(super) kept: Kept<'k>,
+    pub(super) body_name: String,
+    pub(super) body: ToolBody,
+    /// Whether it is no surface of the work.
+    pub(super) is_fixture: bool,
+}
+
+/// What is kept clear of, with what that came to, and what is missed or not proven.
+#[derive(Default)]
+pub(super) struct KeptClear<'k> {
+    pub(super) guarded: Vec<Guarded<'k>>,
+    pub(super) clearances: Vec<ClearanceKept>,
+    pub(super) missed: Vec<NotDone>,
+}
+
+/// What cuts as a body.
+pub(super) fn body_of(cutting: &Cutter) -> ToolBody {
+    ToolBody { pieces: cutting.pieces.clone() }
+}
+
 /// The least distance of each pair over all positions, with what is missed or not proven.
 ///
 /// # Errors
 /// If a surface is not sampled or a body is no outline.
-pub(super) fn kept(
-    job: &Job<'_>,
-    target: &Target<'_, '_>,
+pub(super) fn kept<'j, 'g>(
+    job: &'j Job<'g>,
+    target: &Target<'j, 'g>,
     milled: &Milled<'_, '_>,
     (request, session): (&MillRequest, Session<'_>),
-) -> Result<(Vec<ClearanceKept>, Vec<NotDone>), Failure> {
-    let (mut kept, mut missed) = (Vec::new(), Vec::new());
+) -> Result<KeptClear<'j>, Failure> {
+    let mut all = KeptClear::default();
     for clearance in &target.milling.clearances {
         let body = ToolBody { pieces: outline(job, &clearance.body)?.pieces };
         let found = match &clearance.obstacle {
@@ -51,25 +73,28 @@ pub(super) fn kept(
                 pieces.iter().map(|piece| of_fixture(job, piece, &t_work_fixture)).collect()
             }
         };
+        let is_fixture = matches!(clearance.obstacle, MillingObstacle::Fixture { .. });
         for found in found {
             match found {
-                Err(missing) => missed.push(missing),
+                Err(missing) => all.missed.push(missing),
                 Ok(of) => {
                     let (mut found, not_clear) = least(target, milled, clearance, (&of, &body));
-                    missed.extend(not_clear);
+                    all.missed.extend(not_clear);
                     if let Some(tolerance) = request.certify {
                         let proof = (&of, (clearance.body_name.as_str(), &body), clearance.distance - tolerance);
                         let (proven, open) = proven(target, milled, request.tool_centre_control, proof);
                         found.proven = Some(proven);
-                        missed.extend(open);
+                        all.missed.extend(open);
                     }
-                    kept.push(found);
+                    all.clearances.push(found);
+                    let (body_name, body) = (clearance.body_name.clone(), body.clone());
+                    all.guarded.push(Guarded { kept: of, body_name, body, is_fixture });
                 }
             }
             session.check()?;
         }
     }
-    Ok((kept, missed))
+    Ok(all)
 }
 
 fn of_surface<'k, 'g: 'k>(patch: Patch<'k, 'g>) -> Result<Kept<'k>, NotDone> {

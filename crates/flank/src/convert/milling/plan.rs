@@ -214,7 +214,7 @@ impl Planner<'_, '_, '_> {
             let message = format!("the passes beside {place} do not meet: what they leave between them is no ridge");
             let way = match self.cutter.has_edge() {
                 true => "set them closer together, or lean the cutter more with `lead` and less with `tilt`: to the side its edge cuts no farther than its outermost point",
-                false => "set them closer together, or take a cutter with a larger arc: the ridge lies beyond the end of this one",
+                false => "set them closer together, or take a cutter with a larger arc, or lean this one otherwise: the ridge lies beyond the end of its arc",
             };
             NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way.to_string()])
         })

@@ -16,9 +16,12 @@ pub(super) struct Program {
     pub(super) moves: Vec<Move>,
     /// Whether it says that it ends.
     pub(super) has_end: bool,
+    /// Whether it says in what lengths are.
+    pub(super) has_unit: bool,
 }
 
 /// A block from where all axes are known to where they are.
+#[derive(Clone)]
 pub(super) struct Move {
     pub(super) line: usize,
     pub(super) motion: Motion,
@@ -40,6 +43,14 @@ impl Move {
     /// How far a rotary axis turns, at the most, radians.
     pub(super) fn turn(&self, axes: &FreeAxes) -> f64 {
         axes.rotary().map(|axis| (self.to[axis] - self.from[axis]).abs()).fold(0.0, f64::max)
+    }
+
+    /// Its parts in which no rotary axis turns farther, in order.
+    pub(super) fn parts(&self, axes: &FreeAxes, turn: f64) -> Vec<Move> {
+        if self.turn(axes) <= turn {
+            return vec![self.clone()];
+        }
+        self.halves(axes).iter().flat_map(|half| half.parts(axes, turn)).collect()
     }
 
     /// Its first half and its second.
@@ -81,30 +92,52 @@ struct State<'m, 'p, 'g> {
     tip: [Option<f64>; 3],
     motion: Option<Motion>,
     has_tip_control: bool,
+    /// Whether feeds are the inverse of the time of a block.
+    has_inverse_time: bool,
     /// mm per unit of lengths.
     unit: f64,
+    /// Where the zero of the work is, from which words of linear axes count, in a program that is given the tip; else nothing.
+    zero: Option<Vec<f64>>,
 }
 
 /// Reads a program in the words of Fanuc, Siemens 840D, LinuxCNC or Heidenhain's Klartext, which its first block tells.
 pub(super) fn read(text: &str, machine: &Machine<'_, '_>) -> Result<Program, Fault> {
-    let mut state = State::new(machine);
-    let mut program = Program { moves: Vec::new(), has_end: false };
-    let is_klartext = text.lines().any(klartext::begins);
-    for (number, line) in text.lines().enumerate() {
-        let line_number = number + 1;
-        let fault = |message: String| Fault { line: line_number, message };
+    let lines: Vec<&str> = lines(text);
+    let is_klartext = lines.iter().any(|line| klartext::begins(line));
+    let mut blocks = Vec::with_capacity(lines.len());
+    for (number, line) in lines.iter().enumerate() {
         let capitals = line.trim().to_ascii_uppercase();
-        let block = if is_klartext { klartext::line(&capitals) } else { iso::line(&capitals) }.map_err(fault)?;
-        program.moves.extend(state.follow(&block, line_number).map_err(fault)?);
-        if block.ends {
-            program.has_end = !is_klartext || text.lines().any(klartext::ends);
+        let block = if is_klartext { klartext::line(&capitals) } else { iso::line(&capitals) };
+        let line = number + 1;
+        let block = block.map_err(|message| Fault { line, message });
+        let is_last = block.as_ref().map_or(true, |block| block.ends);
+        blocks.push((line, block));
+        if is_last {
             break;
         }
     }
+    let mut state = State::new(machine);
+    if blocks.iter().any(|(_, block)| block.as_ref().is_ok_and(|block| block.tip_control == Some(true))) {
+        state.zero = Some(machine.at_zero());
+    }
+    let mut program = Program { moves: Vec::new(), has_end: false, has_unit: false };
+    for (line, block) in blocks {
+        let block = block?;
+        program.has_unit |= block.unit.is_some();
+        program.moves.extend(state.follow(&block, line).map_err(|message| Fault { line, message })?);
+        program.has_end |= block.ends && (!is_klartext || lines.iter().any(|line| klartext::ends(line)));
+    }
     if !program.moves.iter().any(|one| one.motion == Motion::Straight) {
-        return Err(Fault { line: text.lines().count(), message: "the program has no cutting block".to_string() });
+        let message = "the program has no cutting block".to_string();
+        return Err(Fault { line: lines.len().max(1), message });
     }
     Ok(program)
+}
+
+/// Its lines, however they end.
+fn lines(text: &str) -> Vec<&str> {
+    let ends = if text.contains('\n') { '\n' } else { '\r' };
+    text.split_terminator(ends).map(|line| line.trim_end_matches('\r')).collect()
 }
 
 impl<'m, 'p, 'g> State<'m, 'p, 'g> {
@@ -116,13 +149,16 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
             tip: [None; 3],
             motion: None,
             has_tip_control: false,
+            has_inverse_time: false,
             unit: 1.0,
+            zero: None,
         }
     }
 
     /// A block: where it goes from where, if both are known.
     fn follow(&mut self, block: &Block, line: usize) -> Result<Option<Move>, String> {
         self.unit = block.unit.unwrap_or(self.unit);
+        self.has_inverse_time = block.inverse_time.unwrap_or(self.has_inverse_time);
         self.motion = block.motion.or(self.motion);
         if let Some(on) = block.tip_control {
             self.tip_control(on);
@@ -140,12 +176,27 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
             self.follow_tip();
         }
         self.within_travels()?;
+        if self.motion == Some(Motion::Straight) {
+            self.has_feed(block)?;
+        }
         let motion = self.motion.ok_or("goes before the program says how: G0 or G1")?;
         match (before, self.known()) {
             (Some(from), Some(to)) => Ok(Some(Move { line, motion, has_tip_control: self.has_tip_control, from, to })),
             // a rapid from an unknown place is how a program begins
             _ if motion == Motion::Rapid => Ok(None),
             _ => Err("cuts before each axis has its position".to_string()),
+        }
+    }
+
+    /// That a control would go on at a block that cuts.
+    fn has_feed(&self, block: &Block) -> Result<(), String> {
+        match block.feed {
+            None if self.has_inverse_time => {
+                Err("has no `F`: with inverse-time feed (G93) each block that cuts needs its own, and controls stop"
+                    .to_string())
+            }
+            Some(feed) if feed <= 0.0 => Err(format!("`F{feed}` is no feed: controls stop; it has to be above zero")),
+            _ => Ok(()),
         }
     }
 
@@ -198,7 +249,12 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
         let own = &self.machine.free[axis].word;
         let is_rotary = self.machine.axes.is_rotary(axis);
         let programmed = if is_rotary { word.value.to_radians() } else { word.value * self.unit };
-        let position = if own.reversed { own.offset - programmed } else { programmed - own.offset };
+        let position = match &self.zero {
+            Some(zero) if !is_rotary && own.reversed => zero[axis] - programmed,
+            Some(zero) if !is_rotary => zero[axis] + programmed,
+            _ if own.reversed => own.offset - programmed,
+            _ => programmed - own.offset,
+        };
         let before = self.axes[axis].filter(|_| word.by_shorter_way && is_rotary);
         let turns = before.map_or(0.0, |before| ((before - position) / TAU).round());
         self.axes[axis] = Some(position + TAU * turns);
@@ -212,8 +268,9 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
             let rounding = self.machine.rounding(k);
             if at < low - rounding || at > high + rounding {
                 let text = |value: f64| units::text(axis.dimension, value, 3);
+                let inches = if self.unit > 1.0 { "; its words count as inches here" } else { "" };
                 return Err(format!(
-                    "{} goes beyond its travel: to {} as {} counts, and its travel is {} .. {}",
+                    "{} goes beyond its travel: to {} as {} counts, and its travel is {} .. {}{inches}",
                     axis.name,
                     text(at),
                     self.machine.machine.name,

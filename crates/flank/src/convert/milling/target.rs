@@ -4,7 +4,7 @@ use std::ops::Deref;
 
 use flank_chain_dsl::{Job, Milling, PassSpacing};
 use flank_expr::{ScalarEvaluator, Tape};
-use flank_solver::{Chart, CutterPose, Lean, NoPose, PoseField, SurfaceFrame};
+use flank_solver::{Chart, CutterPose, Lean, NoPose, OutlinePiece, PoseField, SurfaceFrame};
 
 use super::cutter::MillingCutter;
 use super::patch::{GRIDS, Lattice, NEAR, Patch, point_field, rough};
@@ -98,6 +98,25 @@ impl<'j, 'g> Target<'j, 'g> {
             let details = [way].into_iter().filter(|way| !way.is_empty()).collect();
             NotDone::new(NotDoneKind::NotMilled, self.name(), message).with(details)
         })
+    }
+
+    /// That what is cut deeper than the surface leaves the arcs of the cutter some radius.
+    ///
+    /// # Errors
+    /// If it does not.
+    pub(super) fn has_room(&self, cutter: &MillingCutter) -> Result<(), NotDone> {
+        let arcs = cutter.cutting.pieces.iter().filter_map(|piece| match *piece {
+            OutlinePiece::Arc { radius, .. } if radius > 0.0 => Some(radius),
+            _ => None,
+        });
+        let stock = self.milling.stock;
+        let Some(radius) = arcs.reduce(f64::min).filter(|radius| stock <= -radius) else { return Ok(()) };
+        let message = format!(
+            "`stock {stock} mm` of {} lies deeper than an arc of {} is round: its radius is {radius} mm",
+            self.milling.name, self.milling.cutter_name
+        );
+        let way = format!("cut less deep than {radius} mm, or take a cutter with a larger arc");
+        Err(NotDone::new(NotDoneKind::NotMilled, self.name(), message).with(vec![way]))
     }
 
     /// Surface and cutter as polynomials that are as near as [`NEAR`].

@@ -7,6 +7,7 @@ use flank_solver::{PoseSeries, SweptCutter};
 
 use super::Found;
 use super::block::Motion;
+use super::guard::Guards;
 use super::left::LeftMap;
 use super::machine::{FreeAxes, Machine, moved_by};
 use super::plan::LeftAt;
@@ -14,10 +15,10 @@ use super::program::{Move, Program, read};
 use super::result::VerifiedProgram;
 use super::target::{Fields, Target};
 use crate::project::failure::Failure;
-use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::shown_path;
 
-/// A rapid in which a rotary axis turns farther is looked at in halves, radians: within this its ends are farthest from its middle.
+/// A move in which a rotary axis turns farther is looked at in halves, radians: within this its ends are farthest from its middle.
 const TURNED: f64 = 0.5;
 /// How much farther from its middle than its ends another part of it may lie.
 const BENT: f64 = 1.25;
@@ -28,9 +29,12 @@ pub(super) struct ReadProgram {
     blocks: usize,
     tool_centre_control: bool,
     has_end: bool,
+    has_unit: bool,
     pub(super) map: LeftMap,
     /// The deepest that cutting blocks and rapids go, and in which line.
     deepest: [Option<(LeftAt, usize)>; 2],
+    /// The deepest of them that cut into what is looked at beside the map, in words.
+    struck: [Option<NotDone>; 2],
     /// How deep they may go, mm.
     promised: f64,
 }
@@ -49,8 +53,18 @@ pub(super) fn program(
     let bytes = std::fs::read(path).map_err(|error| Failure::Input(format!("`{shown}` cannot be read: {error}")))?;
     // remarks are in whatever letters a control has
     let text = String::from_utf8_lossy(&bytes);
-    let Program { moves, has_end } =
+    let Program { moves, has_end, has_unit } =
         read(&text, machine).map_err(|fault| Failure::Input(format!("{shown}:{fault}")))?;
+    let promised = promised(target, found, machine);
+    let guards = Guards::new(target, found, promised);
+    let struck = [Motion::Straight, Motion::Rapid].map(|motion| {
+        let (hit, count) = guards.worst(&moves, motion, &machine.axes)?;
+        let what = match motion {
+            Motion::Straight => format!("line {} of {shown}", hit.line),
+            Motion::Rapid => format!("the rapid in line {} of {shown}", hit.line),
+        };
+        Some(guards.told(&what, (hit, count), &no_deeper(promised)))
+    });
     let (rapids, cuts): (Vec<Move>, Vec<Move>) = moves.into_iter().partition(|one| one.motion == Motion::Rapid);
     let left_by = |moves: &[Move]| {
         let blocks: Vec<PoseSeries> = moves.iter().map(|one| one.series(&machine.axes)).collect();
@@ -59,17 +73,43 @@ pub(super) fn program(
         let deepest = map.deepest().map(|(left, number)| (left, moves[number].line));
         (map, deepest)
     };
-    let near = MilledPart::new(&found.fields, found.cutter.cutting.reach()).near(rapids, &machine.axes);
-    let [(map, cut), (by_rapids, rapid)] = [left_by(&cuts), left_by(&near)];
+    let part = MilledPart::new(&found.fields, found.cutter.cutting.reach());
+    let (blocks, has_tip_control) = (cuts.len(), cuts.iter().any(|cut| cut.has_tip_control));
+    let [(map, cut), (by_rapids, rapid)] = [cuts, rapids].map(|moves| left_by(&part.near(moves, &machine.axes)));
     Ok(ReadProgram {
         file: shown,
-        blocks: cuts.len(),
-        tool_centre_control: cuts.iter().any(|cut| cut.has_tip_control),
+        blocks,
+        tool_centre_control: has_tip_control,
         has_end,
+        has_unit,
         map: map.cut_by(&by_rapids),
         deepest: [cut, rapid],
-        promised: promised(target, found, machine),
+        struck,
+        promised,
     })
+}
+
+/// The rapid of an own program that cuts in deepest, in words; such a program is not written.
+///
+/// # Errors
+/// If the program is not followed.
+pub(super) fn rapids(
+    text: &str,
+    target: &Target<'_, '_>,
+    found: &Found<'_, '_>,
+    machine: &Machine<'_, '_>,
+) -> Result<Option<NotDone>, Failure> {
+    let Program { moves, .. } = read(text, machine)
+        .map_err(|fault| Failure::Unsolved(format!("the program would not be followed: {fault}")))?;
+    let guards = Guards::new(target, found, promised(target, found, machine));
+    Ok(guards.worst(&moves, Motion::Rapid, &machine.axes).map(|(hit, count)| {
+        let lines: Vec<&str> = text.lines().collect();
+        let remark = lines[..hit.line].iter().rev().find_map(|line| line.strip_prefix(['(', ';']));
+        let pass = remark.unwrap_or("its beginning").trim().trim_end_matches(')').to_ascii_lowercase();
+        let what = format!("the rapid `{}` of {pass}", lines[hit.line - 1]);
+        let way = "clamp the work elsewhere, lean the cutter otherwise, or mill fewer spaces in one program";
+        guards.told(&what, (hit, count), way)
+    }))
 }
 
 /// How deep a program may cut, mm: as deep as the plan does, with the chord error that is asked for and the decimals of words.
@@ -97,24 +137,24 @@ impl MilledPart {
         MilledPart { center, radius, reach }
     }
 
-    /// The parts of rapids that come near, each short against the cutter.
-    fn near(&self, rapids: Vec<Move>, axes: &FreeAxes) -> Vec<Move> {
-        let (mut left, mut near) = (rapids, Vec::new());
+    /// The parts of moves that come near, with little turns of rotary axes; those of rapids are short against the cutter.
+    fn near(&self, moves: Vec<Move>, axes: &FreeAxes) -> Vec<Move> {
+        let (mut left, mut near) = (moves, Vec::new());
         left.reverse();
-        while let Some(rapid) = left.pop() {
-            let series = rapid.series(axes);
+        while let Some(one) = left.pop() {
+            let series = one.series(axes);
             let [first, middle, last] = [0.0, 0.5, 1.0].map(|share| series.at(share));
             let moved =
                 BENT * [first, last].map(|end| moved_by(&middle, &end, self.reach)).into_iter().fold(0.0, f64::max);
-            let is_even = rapid.turn(axes) <= TURNED;
+            let is_even = one.turn(axes) <= TURNED;
             let far = distance([middle[0], middle[1], middle[2]], self.center) - self.radius - self.reach;
             if is_even && far > moved {
                 continue;
             }
-            if is_even && moved <= self.reach {
-                near.push(rapid);
+            if is_even && (moved <= self.reach || one.motion == Motion::Straight) {
+                near.push(one);
             } else {
-                left.extend(rapid.halves(axes).into_iter().rev());
+                left.extend(one.halves(axes).into_iter().rev());
             }
         }
         near
@@ -133,6 +173,13 @@ impl ReadProgram {
             tool_centre_control: self.tool_centre_control,
             map: self.map.result(target),
         }
+    }
+
+    /// What it leaves to the control.
+    pub(super) fn assumed(&self, target: &Target<'_, '_>) -> Option<Remark> {
+        let message = format!("{} does not say its unit: lengths are read as mm", self.file);
+        let way = "G21 says mm, G20 inches; of Siemens G710 and G700".to_string();
+        (!self.has_unit).then(|| Remark::new(RemarkKind::Unsaid, target.name(), message).with(vec![way]))
     }
 
     /// What it does not do as the milling says.
@@ -156,7 +203,7 @@ impl ReadProgram {
                 "blocks are missing, or go elsewhere: look at units and zero".to_string(),
             )
         });
-        let deep = ["line", "the rapid in line"].into_iter().zip(self.deepest).filter_map(|(what, deepest)| {
+        let of_map = |(what, deepest): (&str, Option<(LeftAt, usize)>)| {
             let (left, line) = deepest.filter(|(left, _)| left.height < -self.promised)?;
             let message = format!(
                 "{what} {line} of {} cuts {:.4} mm into {name} at {}",
@@ -164,12 +211,16 @@ impl ReadProgram {
                 -left.height,
                 target.place(left.shares)
             );
-            let way = format!(
-                "what is planned, with its blocks and the decimals of words, is no deeper than {:.4} mm",
-                self.promised
-            );
-            Some(told(NotDoneKind::TooDeep, message, way))
-        });
-        unended.into_iter().chain(untouched).chain(deep).collect()
+            Some(told(NotDoneKind::TooDeep, message, no_deeper(self.promised)))
+        };
+        let [cut, rapid] = &self.struck;
+        let cuts = of_map(("line", self.deepest[0])).into_iter().chain(cut.clone());
+        // what the map says of a rapid, the whole surface says better
+        let rapids = rapid.clone().or_else(|| of_map(("the rapid in line", self.deepest[1])));
+        unended.into_iter().chain(untouched).chain(cuts).chain(rapids).collect()
     }
+}
+
+fn no_deeper(promised: f64) -> String {
+    format!("what is planned, with its blocks and the decimals of words, is no deeper than {promised:.4} mm")
 }
