@@ -79,7 +79,7 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
         problem.settable(&free).iter().map(|&k| fitting.new_value(k, &correction)).collect();
     let (corrected, files) = match &request.write {
         Some(file) if !values.is_empty() => {
-            let text = corrected::text(&request.jobs, (of.job, &values), file)?;
+            let text = corrected::text(&request.jobs, (of.job, &values), file, &origin)?;
             if request.dry { (Some(text), vec![]) } else { (None, vec![corrected::write(file, &text, &origin)?]) }
         }
         _ => (None, vec![]),
