@@ -4,8 +4,9 @@ use divan::{Bencher, black_box};
 use flank_chain_dsl::{GeneratedSurface, Job, Parameter};
 use flank_expr::Graph;
 use flank_solver::{
-    AdjustableSurface, BoundSurface, ContactNumber, ContactProblem, ContactSynthesis, ContactWish, Deviation,
-    FlankCorners, NearFoot, Outcome, Range, ScaledUnknown, SearchEnd, SettingsAdjustment, SurfacePoint, WantedPoints,
+    AdjustableSurface, Alignment, BoundSurface, ContactNumber, ContactProblem, ContactSynthesis, ContactWish,
+    Deviation, FlankCorners, NearFoot, Outcome, Range, ScaledUnknown, SearchEnd, SettingsAdjustment, SurfacePoint,
+    WantedPoints,
 };
 use flank_tests::pairs::with_pair_in;
 use flank_tests::{bound, job, jobs, problem, turned};
@@ -113,7 +114,8 @@ fn fitted(bencher: Bencher, counts: [usize; 2]) {
         }],
         kept: vec![],
         settings: settings.iter().map(|of| unknown(of)).collect(),
-        turn: ScaledUnknown { start: 0.0, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
+        alignment: Alignment::Turn,
+        motion: ScaledUnknown { start: 0.0, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
         further: vec![],
         shapes: None,
         resolution: 1e-4,
@@ -149,8 +151,8 @@ fn ease_off_25x45(bencher: Bencher) {
     };
     let (from, near) = (solved(conjugate), solved(basic));
     let middle = from.len() / 2;
-    let nominal = Deviation::new(&bound(basic, concave(basic))).expect("all bound");
-    let turn = -nominal.turn_to(from[middle].position, &near[middle]).expect("it comes there");
+    let nominal = Deviation::new(&bound(basic, concave(basic)), Alignment::Turn).expect("all bound");
+    let turn = -nominal.motion_to(from[middle].position, &near[middle]).expect("it comes there");
     let share = |at: usize, count: usize| 2.0 * at as f64 / (count - 1) as f64 - 1.0;
     let wished = |at: usize| {
         let [v, u] = [share(at / counts[1], counts[0]), share(at % counts[1], counts[1])];
@@ -175,7 +177,8 @@ fn ease_off_25x45(bencher: Bencher) {
         }],
         kept: vec![],
         settings: named(basic, &OF_EASE_OFF).iter().map(|of| unknown(of)).collect(),
-        turn: ScaledUnknown { start: turn, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
+        alignment: Alignment::Turn,
+        motion: ScaledUnknown { start: turn, scale: 2.5e-3, range: Range { low: -7.0, high: 7.0 } },
         further: vec![],
         shapes: None,
         // weaker directions do next to nothing, and lead to where points have no foot

@@ -3,8 +3,8 @@
 use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Parameter, ValueSource};
 use flank_expr::Graph;
 use flank_solver::{
-    AdjustableSurface, AdjustedSurfaces, BoundSurface, NearFoot, Outcome, Range, RangeEnd, ScaledUnknown, SearchEnd,
-    SettingsAdjustment, SurfacePoint, WantedPoints,
+    AdjustableSurface, AdjustedSurfaces, Alignment, BoundSurface, NearFoot, Outcome, Range, RangeEnd, ScaledUnknown,
+    SearchEnd, SettingsAdjustment, SurfacePoint, WantedPoints,
 };
 use flank_tests::{Dice, jobs, problem, shipped, turned};
 
@@ -127,7 +127,8 @@ impl<'p, 'g> Gauge<'p, 'g> {
             wanted: vec![wanted],
             kept: vec![],
             settings,
-            turn,
+            alignment: Alignment::Turn,
+            motion: turn,
             further: vec![],
             shapes: None,
             resolution: 1e-4,

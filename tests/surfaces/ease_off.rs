@@ -2,7 +2,7 @@
 //! tooth space.
 
 use flank_expr::Graph;
-use flank_solver::{Deviation, EaseOff, Outcome, SurfacePoint};
+use flank_solver::{Alignment, Deviation, EaseOff, Outcome, SurfacePoint};
 use flank_tests::{Row, bound, difference, job_named, job_of_text, library, points, reference_csv};
 
 const SPEC: &str = "specs/bevel/ease_off_19x62.chain";
@@ -10,7 +10,7 @@ const MACHINES: [&str; 2] = ["machines/cradle.chain", "tools/face_mill.chain"];
 
 fn held_against<'g>(job: &flank_chain_dsl::Job<'g>, surface: &str) -> Deviation {
     let generated = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
-    Deviation::new(&bound(job, generated)).expect("all bound")
+    Deviation::new(&bound(job, generated), Alignment::Turn).expect("all bound")
 }
 
 fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
@@ -30,7 +30,7 @@ fn the_ease_off_ends_on_the_flank() {
     );
     let deviation = held_against(&pinion, "concave");
     let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
-    let turn = deviation.turn_to(from[middle].position, &near[middle]).expect("they meet");
+    let turn = deviation.motion_to(from[middle].position, &near[middle]).expect("they meet");
     let found = deviation.map(&from, &near, turn);
     assert!(found[middle].expect("it is measured").abs() < 1e-12);
     for k in (0..found.len()).step_by(49) {
@@ -104,7 +104,7 @@ fn the_numbers_follow_from_the_tables() {
     let targets: Vec<[f64; 2]> = basic.iter().map(|row| [row.get("z"), row.get("R")]).collect();
     let [near, from] = [&pinion, &base].map(|job| points(job, "concave", ["z", "rho"], &targets));
     let deviation = held_against(&pinion, "concave");
-    let found_turn = deviation.turn_to(from[middle].position, &near[middle]).expect("they meet");
+    let found_turn = deviation.motion_to(from[middle].position, &near[middle]).expect("they meet");
     assert!((found_turn - turn).abs() < 1e-9, "{found_turn} {turn}");
     let map: Vec<f64> =
         deviation.map(&from, &near, found_turn).into_iter().map(|off| 1e3 * off.expect("it is measured")).collect();
@@ -135,7 +135,7 @@ fn the_width_of_a_tooth_space() {
     let target = [26.0, 111.0];
     let [concave, convex] = ["concave", "convex"].map(|flank| points(&gear, flank, ["z", "rho"], &[target]).remove(0));
     let deviation = held_against(&gear, "concave");
-    let turn = deviation.turn_to(convex.position, &concave).expect("they meet");
+    let turn = deviation.motion_to(convex.position, &concave).expect("they meet");
     let angle = |point: &SurfacePoint| point.position[1].atan2(point.position[0]);
     assert!((turn - (angle(&convex) - angle(&concave))).abs() < 1e-12);
     let width = deviation.along_normal(&convex, &concave, 0.0).expect("the normal meets the other flank");

@@ -525,3 +525,20 @@ fn a_swept_surface_is_carried_over_as_far_as_its_points_need() {
     // the sample is 20 mm wide
     assert!(told.contains("stroke from -10.000000 mm to 10.000000 mm"), "{told}");
 }
+
+/// What leads from the work to the tool on a machine with a mirrored work frame is no motion on one without: that is told before anything is
+/// solved, and not as a direction that cannot be reached.
+#[test]
+fn machines_of_opposite_hand_are_told() {
+    let out = folder("convert-hand");
+    let free_form = support::self_contained(&["machines/free_form"]);
+    let renamed = free_form.replace("frame work", "frame right_hand").replace("expect work", "expect right_hand");
+    let mirrored =
+        format!("{renamed}machine other_hand extends free_form {{ frame work in right_hand = mirror_z() }}\n");
+    let target = support::written(&out, "mirrored.chain", &mirrored);
+    let run = flank(&["convert", "specs/bevel/pinion_19x62.chain", "--to", &target, "--json"]);
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(told.contains("other_hand is of the other hand") && !told.contains("deg are missing"), "{told}");
+    assert!(!text(&run.stdout).contains("solved"), "{}", text(&run.stdout));
+}

@@ -737,3 +737,27 @@ fn the_published_ease_off_is_met_from_the_basic_settings() {
     let (told, _) = fit(0, &[&asked[..], &["--resolution", "0.001um"]].concat());
     assert!(number(&told["before_um"]) > 10.0 && number(&told["predicted_um"]) < 1e-3, "{}", told["predicted_um"]);
 }
+
+/// The job's own file is what is read: that is told, and not that it would use itself.
+#[test]
+fn the_file_of_the_job_is_not_written_over() {
+    let file = gauged("fit_own_file");
+    let folder = file.parent().expect("a folder");
+    let spec = written(
+        folder,
+        "own.chain",
+        &support::self_contained(&[
+            "functions/blanks_19x62",
+            "functions/bevel",
+            "machines/cradle",
+            "tools/face_mill",
+            "bevel/pinion_19x62",
+        ]),
+    );
+    let before = std::fs::read_to_string(&spec).expect("written");
+    let run = flank(&["fit", &spec, "concave", "--measured", path(&file), "--vary", VARIED, "--write", &spec]);
+    let told = text(&run.stderr);
+    assert_eq!(run.status.code(), Some(1), "{told}");
+    assert!(told.contains("is what this command reads and would be written over") && !told.contains("E0"), "{told}");
+    assert_eq!(std::fs::read_to_string(&spec).expect("kept"), before);
+}

@@ -318,3 +318,76 @@ fn what_has_no_end_is_not_read() {
         assert!(told.contains(&format!("error[E0001]: cannot read `{file}`: {why}")), "{told}");
     }
 }
+
+/// REXS with a tool of these attributes.
+fn with_blade(attributes: &str) -> String {
+    let pressure = "<attribute id=\"blade_pressure_angle\"";
+    let all = REXS.replace("<attribute id=\"blade_spheric_radius\" unit=\"mm\">2000000</attribute>", "");
+    assert!(all != REXS && all.contains(pressure), "{all}");
+    all.replace(pressure, &format!("{attributes}{pressure}"))
+}
+
+/// The blade of 20 deg and 300 mm radius ends at the height of its profile, 8 mm over the tips: on its circle, whose centre is 300 sin 20 mm
+/// beyond them, at asin(sin 20 + 8 / 300) = 21.638 deg. The rounding of 0.20845 mm touches it at 20.028 deg, so that the profile is 8.66772 mm
+/// long. A straight blade keeps its height.
+#[test]
+fn the_height_of_a_curved_blade_is_no_length() {
+    let out = folder("rexs_height");
+    let height = "<attribute id=\"blade_profile_height\" unit=\"mm\">8</attribute>";
+    let job = |name: &str, radius: &str| {
+        let radius = format!("<attribute id=\"blade_spheric_radius\" unit=\"mm\">{radius}</attribute>");
+        let file = written(&out, name, &with_blade(&format!("{height}{radius}")));
+        let run = flank(&["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        text(&run.stdout)
+    };
+    let curved = job("curved.rexs", "300");
+    let at = curved.find("blade_length: ").expect("a length") + "blade_length: ".len();
+    let length: f64 = curved[at..].split(' ').next().expect("a number").parse().expect("a number");
+    assert!((length - 8.667717604405452).abs() < 1e-12, "{length}");
+    assert!(job("straight.rexs", "0").contains("blade_height: 8.0 mm"));
+    // so flat that it is straight: the rounding of 0.20845 mm over 70 deg, and 8 mm less its height of 0.20845 (1 - sin 20) mm over cos 20
+    let flat = job("flat.rexs", "2000000");
+    let at = flat.find("blade_length: ").expect("a length") + "blade_length: ".len();
+    let length: f64 = flat[at..].split(' ').next().expect("a number").parse().expect("a number");
+    let (sine, cosine) = 20f64.to_radians().sin_cos();
+    let straight = 0.20845 * 70f64.to_radians() + (8.0 - 0.20845 * (1.0 - sine)) / cosine;
+    assert!((length - straight).abs() < 1e-4, "{length} {straight}");
+}
+
+#[test]
+fn what_a_rexs_file_contradicts_is_not_guessed() {
+    let out = folder("rexs_twice");
+    let twice = REXS
+        .replace("</component>", "<attribute id=\"blade_pressure_angle\" unit=\"deg\">25.0</attribute></component>");
+    let again = REXS.replacen("</components>", "<component id=\"21\" type=\"bevel_gear_tool\"/></components>", 1);
+    let same = REXS
+        .replace("</component>", "<attribute id=\"blade_pressure_angle\" unit=\"deg\">20.0</attribute></component>");
+    let hollow = with_blade("<attribute id=\"blade_spheric_radius\" unit=\"mm\">-500</attribute>");
+    let high = with_blade(
+        "<attribute id=\"blade_spheric_radius\" unit=\"mm\">10</attribute><attribute id=\"blade_profile_height\" unit=\"mm\">8</attribute>",
+    );
+    let bare = REXS.replace("unit=\"mm\">97.9", ">97.9");
+    for (name, content, wanted) in [
+        ("twice", twice, "`blade_pressure_angle` is there twice, in line "),
+        ("again", again, "there are several `bevel_gear_tool` with the id 21, in lines "),
+        ("hollow", hollow, "blade_spheric_radius is -500 mm"),
+        ("high", high, "does not reach the blade_profile_height 8 mm"),
+        ("bare", bare, "`radial_distance` is given without a unit, REXS has it in mm"),
+    ] {
+        let file = written(&out, name, &content);
+        let run = flank(&["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"]);
+        assert_eq!(run.status.code(), Some(1), "{name}: {}", text(&run.stdout));
+        assert!(text(&run.stderr).contains(wanted), "{name}: {}", text(&run.stderr));
+    }
+    // said twice, and the same
+    let file = written(&out, "same", &same);
+    let run = flank(&["import", &file, "--signs", "frames", "--coefficients", "taylor", "--outside", "21"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let run = flank(&["import", &file, "--signs", "frames"]);
+    assert!(
+        text(&run.stderr).contains("--outside for the concave flank, --inside for the convex one"),
+        "{}",
+        text(&run.stderr)
+    );
+}

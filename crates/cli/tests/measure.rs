@@ -5,7 +5,7 @@ mod support;
 use std::path::Path;
 
 use serde_json::Value;
-use support::{flank, folder, text, written};
+use support::{flank, folder, text, top, written};
 
 const PINION: &str = "specs/bevel/pinion_19x62.chain";
 
@@ -496,5 +496,99 @@ fn what_has_no_end_is_not_read() {
         assert_eq!(run.status.code(), Some(1), "{file}");
         let told = text(&run.stderr);
         assert!(told.contains(&format!("error[E0001]: cannot read `{file}`: {why}")), "{told}");
+    }
+}
+
+/// A rack that lies 0.05 mm further along the direction in which its spaces follow each other is the nominal one, shifted. Held as it lies
+/// it is off by 50 um cos 20 deg = 46.985 um along the normal, everywhere.
+#[test]
+fn a_rack_is_shifted_onto_its_place() {
+    let out = folder("measure_rack");
+    let rack = "specs/bodies/rack_body.chain";
+    let folder = out.to_str().expect("a plain path");
+    measure(&out, &[rack, "--surface", "flank_minus"]);
+    let line = |([row, column], [x, y, z], _): &Nominal| format!("{row},{column},{x:?},{:?},{z:?}\n", y + 0.05);
+    let moved: String = nominal(&out.join("rack_body.grid.csv"), "flank_minus", "grid").iter().map(line).collect();
+    let file = written(&out, "moved.csv", &format!("row,column,x,y,z\n{moved}"));
+    let held = ["deviation", rack, "flank_minus", "--measured", &file, "--no-picture", "--out", folder];
+    let told = |more: &[&str]| -> Value {
+        let run = flank(&[&held[..], &["--json"], more].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        serde_json::from_slice(&run.stdout).expect("JSON")
+    };
+    let number = |told: &Value, key: &str| told[key].as_f64().expect("a number");
+    let aligned = told(&[]);
+    assert!((number(&aligned, "shift_mm") + 0.05).abs() < 1e-9 && aligned["turn_deg"].is_null(), "{aligned}");
+    assert!(number(&aligned, "rms_um") < 1e-6, "{aligned}");
+    let as_it_lies = told(&["--no-align"]);
+    let off = -50.0 * 20f64.to_radians().cos();
+    for key in ["lowest_um", "highest_um"] {
+        assert!((number(&as_it_lies, key) - off).abs() < 1e-6, "{as_it_lies}");
+    }
+    let shown = text(&flank(&held).stdout);
+    assert!(shown.contains("  shift along y -0.050000 mm\n") && !shown.contains("turn about z"), "{shown}");
+    // no setting is to be corrected
+    let fitted = ["fit", rack, "flank_minus", "--measured", &file, "--vary", "r.pressure_angle", "--json"];
+    let run = flank(&fitted);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    assert!((number(&found, "shift_mm") + 0.05).abs() < 1e-9 && found["turn_deg"].is_null(), "{found}");
+    assert!(number(&found["identification"]["settings"][0], "change").abs() < 1e-9, "{found}");
+    assert!(number(&found, "before_um") < 1e-6, "{found}");
+}
+
+/// What is the profile and what the length is told by the surface, however wide or deep the sample is: a gear narrower than its teeth are
+/// deep, racks, whose teeth stand in the direction of x, and a short piece of a thread.
+#[test]
+fn profile_and_length_are_told_whatever_is_longer() {
+    let out = folder("measure_short");
+    let lies = |arguments: &[&str], surface: &str| {
+        let told = measure(&out, &[arguments, &["--rows", "3", "--columns", "3"]].concat());
+        let all = told["flanks"].as_array().expect("flanks").clone();
+        let one = all.iter().find(|one| one["surface"] == surface).expect("it is measured").clone();
+        let ends = |key: &str| format!("{} to {}", one[key][0], one[key][1]).replace('"', "");
+        (one["flank"].as_str().map(str::to_string), ends("rows"), ends("columns"))
+    };
+    let is = |hand: Option<&str>, rows: &str, columns: &str| (hand.map(str::to_string), rows.into(), columns.into());
+    let faces = "lower face to upper face";
+    for width in ["1 mm", "5 mm", "6 mm", "60 mm"] {
+        let set = format!("face_width={width}");
+        let gear = ["specs/hobbing/helical_gear.chain", "--set", &set];
+        for (surface, hand) in [("lower_flank", "right"), ("upper_flank", "left")] {
+            assert_eq!(lies(&gear, surface), is(Some(hand), "root to tip", faces), "{width}");
+            let grid = nominal(&out.join("helical_gear.grid.csv"), surface, "grid");
+            assert!((0..3).all(|k| (radius(grid[k].1) - radius(grid[0].1)).abs() < 1e-6), "row 1 lies at the root");
+            assert!(radius(grid[8].1) > radius(grid[0].1) + 4.0, "{width}: row 3 lies at the tip");
+        }
+    }
+    // seen along z, x up, y is to the right: a normal to -y points to the left
+    for (spec, job) in
+        [("specs/bodies/rack_body.chain", "rack_body"), ("specs/bodies/helical_rack_body.chain", "helical_rack_body")]
+    {
+        for (surface, hand) in
+            [("flank_minus", "left"), ("fillet_minus", "left"), ("fillet_plus", "right"), ("flank_plus", "right")]
+        {
+            assert_eq!(lies(&[spec], surface), is(Some(hand), "root to tip", faces), "{spec}: {surface}");
+            let grid = nominal(&out.join(format!("{job}.grid.csv")), surface, "grid");
+            let to_the_right = if hand == "right" { 1.0 } else { -1.0 };
+            assert!(grid.iter().all(|(.., normal)| normal[1] * to_the_right > 0.0), "{surface}");
+            assert!(grid[8].1[0] > grid[0].1[0] + 0.3 && grid[8].1[2] > grid[0].1[2], "{surface}: up and along");
+        }
+    }
+    let root = lies(&["specs/bodies/helical_rack_body.chain"], "root");
+    assert_eq!(root, is(None, "left side to right side", faces));
+    let grid = nominal(&out.join("helical_rack_body.grid.csv"), "root", "grid");
+    assert!(grid[6].1[1] > grid[0].1[1], "from the left side to the right one");
+    // without a solid it is the contact that moves it as a rack; its tips point to -x, and the flank with a normal to y to the left
+    assert_eq!(lies(&["specs/pairs/rack_and_pinion.chain"], "rack_flank"), is(Some("left"), "root to tip", faces));
+    for half in ["0.5 mm", "3 mm", "6 mm"] {
+        let wheel = std::fs::read_to_string(top().join("specs/grinding/dressed_wheel.chain")).expect("it is there");
+        let wheel = wheel
+            .replace("z: -3 mm .. 3 mm by 7", &format!("z: -{half} .. {half} by 7"))
+            .replace("\"../", "\"../../../specs/")
+            .replace("\"thread_wheel.chain\"", "\"../../../specs/grinding/thread_wheel.chain\"");
+        let spec = written(&out, "wheel.chain", &wheel);
+        let thread = lies(&[&spec, "--surface", "thread"], "thread");
+        assert_eq!(thread, is(None, "root to tip", "lower end to upper end"), "{half}");
     }
 }

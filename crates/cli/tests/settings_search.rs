@@ -78,3 +78,20 @@ fn settings_are_looked_for_from_as_many_starts_as_asked_for() {
     assert!(text(&of_one.stderr).contains("no values of these settings were found"), "{}", text(&of_one.stderr));
     assert_eq!(flank(&spec).status.code(), Some(0));
 }
+
+/// A tilt of 3.5 deg towards 55 deg is one of -3.5 deg towards -125 deg: of the two the first is nearer to the defaults, which are zero.
+#[test]
+fn of_equal_settings_the_nearest_to_the_defaults_are_found() {
+    let fit = "work_offset,sliding_base,machine_center_to_crossing_point,cutter_tilt,cutter_swivel,modified_roll_2c,modified_roll_6d,\
+               helical_motion_1,helical_motion_2";
+    let spec =
+        ["convert", "specs/bevel/tilted_pinion.chain", "--surface", "concave", "--to", "specs/machines/cradle.chain"];
+    let run = flank(&[&spec[..], &["--fit", fit, "--json"]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    for (name, value) in [("cutter_tilt", 3.5), ("cutter_swivel", 55.0)] {
+        let settings = found["settings"].as_array().expect("settings");
+        let setting = settings.iter().find(|setting| setting["name"] == name).expect(name);
+        assert!((setting["value"].as_f64().unwrap() - value).abs() < 1e-8, "{setting}");
+    }
+}

@@ -651,3 +651,15 @@ fn the_table_says_what_stands_in_the_file() {
         }
     }
 }
+
+/// The value that is wrong is told, and not that what is made of it has no such names.
+#[test]
+fn what_a_wrong_value_takes_along_is_not_unknown() {
+    for spec in ["specs/hobbing/worm_wheel.chain", "specs/bodies/worm_and_wheel_body.chain"] {
+        let run = flank(&["solve", spec, "--set", "h.left_hand=2"]);
+        let told = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(1), "{told}");
+        assert!(told.contains("E0307") && told.contains("`left_hand` is 2, outside its range 0 .. 1"), "{told}");
+        assert!(!told.contains("E0201"), "{spec}: {told}");
+    }
+}

@@ -757,3 +757,24 @@ fn commands_of_the_page_do_what_it_says() {
     }
     assert!(commands >= 8, "{commands} commands");
 }
+
+/// A module further on moves the flank of a rack parallel to itself: nothing is left of it once the rack is shifted back.
+#[test]
+fn a_rack_of_another_module_has_no_ease_off() {
+    let folder = folder();
+    let cases = ["--vary", "r.module=2.99mm..3.01mm by 3"];
+    let collected = "ease_off:flank_minus,width:flank_plus,flank_minus";
+    let (heads, rows) = swept("specs/bodies/rack_body.chain", &cases, collected, &study(&folder, "a"));
+    let number = |row: &[String], head: &str| {
+        let at = heads.iter().position(|known| known.ends_with(head)).expect("a column");
+        row[at].parse::<f64>().expect("a number")
+    };
+    assert_eq!(rows.len(), 3);
+    for (row, module) in rows.iter().zip([2.99, 3.0, 3.01]) {
+        for head in ["slope_rows [um]", "crowning_rows [um]", "rms [um]", "flank_minus.turn [deg]"] {
+            assert!(number(row, head).abs() < 1e-6, "{head}: {row:?}");
+        }
+        // in the middle of the sampled flank, of the nominal module, the flanks of a space are as far apart as the tooth of the rack cutter is wide
+        assert!(number(row, "width [mm]").abs() > 2.0 && number(row, "width [mm]").abs() < module * 1.6, "{row:?}");
+    }
+}

@@ -157,3 +157,60 @@ fn what_scatters_by_itself_is_cut_from_its_formula() {
         assert!((swept / linear - 1.0).abs() < 3.0 / 1000_f64.sqrt(), "{name}: {linear} and {swept}");
     }
 }
+
+/// A module further on moves the flank of a rack parallel to itself, by pi / 4 of it along the rack, and leaves no slope. A pressure angle
+/// that is off by an arcminute turns it about its middle: over the L mm of the flank that are sampled by L tan 1' .
+#[test]
+fn a_rack_scatters_beside_its_shift() {
+    let told = |scatter: &str| -> serde_json::Value {
+        let run = flank(&["tolerance", "specs/bodies/rack_body.chain", "flank_minus", "--scatter", scatter, "--json"]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        serde_json::from_slice(&run.stdout).expect("JSON")
+    };
+    let deviation = |told: &serde_json::Value, name: &str| {
+        let all = told["results"].as_array().expect("results").clone();
+        let one = all.iter().find(|one| one["name"] == name).expect("a result").clone();
+        one["standard_deviation"].as_f64().expect("a number")
+    };
+    let module = told("r.module=10um");
+    assert!(deviation(&module, "slope_profilewise") < 1e-9, "{module}");
+    assert!((deviation(&module, "position") - 10.0 * std::f64::consts::FRAC_PI_4).abs() < 1e-9, "{module}");
+    let angle = told("r.pressure_angle=1arcmin");
+    // from where the tooth's depth of 6.75 mm less 0.9 mm and the rounding of the tip leave the flank
+    assert!((deviation(&angle, "slope_profilewise") - 1.828).abs() < 5e-4, "{angle}");
+}
+
+/// With the scatter that a budget allows, and with the same correlation, a result scatters by the budget: 1 um.
+#[test]
+fn a_budget_holds_with_correlations() {
+    let asked = |scatter: &str, correlation: &str, budget: &[&str]| -> serde_json::Value {
+        let of = ["tolerance", PINION, "concave", "--scatter", scatter, "--correlation", correlation, "--json"];
+        let run = flank(&[&of[..], budget].concat());
+        serde_json::from_slice(&run.stdout).expect("JSON")
+    };
+    let deviation = |told: &serde_json::Value, name: &str| {
+        let all = told["results"].as_array().expect("results").clone();
+        let one = all.iter().find(|one| one["name"] == name).expect("a result").clone();
+        one["standard_deviation"].as_f64().expect("a number")
+    };
+    let allowed = |told: &serde_json::Value| -> String {
+        let amount = |cause: &serde_json::Value| {
+            let name = cause["name"].as_str().expect("a name").to_string();
+            let unit = cause["unit"].as_str().expect("a unit").to_string();
+            format!("{name}={:?}{unit}", cause["may_scatter"].as_f64().expect("an amount"))
+        };
+        told["causes"].as_array().expect("causes").iter().map(amount).collect::<Vec<_>>().join(",")
+    };
+    let usual = "radial_distance=5um,machine_root_angle=20arcsec,ratio_of_roll=0.01%";
+    for by in [-0.9, 0.0, 0.9] {
+        let correlation = format!("radial_distance,ratio_of_roll={by}");
+        let one = asked(usual, &correlation, &["--budget", "slope_lengthwise=1um"]);
+        let back = asked(&allowed(&one), &correlation, &[]);
+        assert!((deviation(&back, "slope_lengthwise") - 1.0).abs() < 1e-9, "{by}: {back}");
+        // of several that are wanted one is met, and none is exceeded
+        let both = asked(usual, &correlation, &["--budget", "slope_lengthwise=1um,slope_profilewise=1um"]);
+        let back = asked(&allowed(&both), &correlation, &[]);
+        let most = deviation(&back, "slope_lengthwise").max(deviation(&back, "slope_profilewise"));
+        assert!(most < 1.0 + 1e-9, "{by}: {most}");
+    }
+}

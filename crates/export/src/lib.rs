@@ -7,7 +7,7 @@
 //! was not solved is written as such: no file and no picture invents a position for it.
 //!
 //! ```
-//! use flank_export::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values, write_csv};
+//! use flank_export::{Axis, Dataset, Field, Header, Layout, Outcome, Patch, Point, Unit, Unknown, Values, write_csv};
 //!
 //! let point = |z: f64| Point {
 //!     outcome: Outcome::Solved,
@@ -28,6 +28,7 @@
 //!     patches: vec![Patch {
 //!         name: "side".into(),
 //!         frame: "m.table".into(),
+//!         layout: Layout::Round,
 //!         rows: Axis { label: "z".into(), count: 2 },
 //!         columns: Axis { label: "rho".into(), count: 1 },
 //!         unknowns: vec![Unknown { name: "phi".into(), unit: Unit::Degree }],
@@ -84,7 +85,7 @@ pub use motion::{
 pub use points::bands::{Banded, Surfaces, Taker};
 pub use points::conventions::sentences as conventions;
 pub use points::csv::write_csv;
-pub use points::dataset::{Axis, Dataset, Field, Header, Outcome, Patch, Point, Unit, Unknown, Values};
+pub use points::dataset::{Axis, Dataset, Field, Header, Layout, Outcome, Patch, Point, Unit, Unknown, Values};
 pub use points::json::write_json;
 pub use points::known::{Kept, Known};
 pub use points::obj::write_obj;

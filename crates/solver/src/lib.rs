@@ -29,11 +29,12 @@ pub use analysis::adjustment::choice::{linear_rest, most_effective, most_indepen
 pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
 pub use analysis::adjustment::shapes::Shapes;
 pub use analysis::adjustment::{AdjustableSurface, Foot, FootSearch, NearFoot};
+pub use analysis::alignment::Alignment;
 pub use analysis::cutting::{CuttingEdges, ScallopHeight};
 pub use analysis::deviation::{Deviation, EaseOff};
 pub use analysis::extent::extent;
 pub use analysis::geometry::{Contact, Curvature, Metric, PointGeometry, Principal, SurfaceGeometry};
-pub use analysis::inspection::{Inspection, beside, mean_turn};
+pub use analysis::inspection::{Inspection, beside};
 pub use analysis::intersection::{Intersection, Line, Meeting};
 pub use analysis::involute::{InvoluteHelicoid, InvoluteReference, TraceEvaluation};
 pub use analysis::scatter::{GaussianDraw, Scatter};

@@ -138,7 +138,7 @@ def _one(found: list[_flank.Job], wanted: str | None) -> Job:
 def deviation(surface: Surface, from_: Surface, *, align: bool = True) -> Deviation:
     """How far a surface lies off another one of the same body, um along the normal of the latter, plus is material: the ease-off.
 
-    The surface is turned about z to meet the other in the middle of its grid, unless `align` is false. Both may be of jobs with different
+    The surface is turned about z, a rack's shifted along y, to meet the other in the middle of its grid, unless `align` is false. Both may be of jobs with different
     values or specs.
 
     >>> import flank

@@ -395,8 +395,8 @@ impl<'g> Builder<'_, 'g> {
             profiles: Vec::new(),
         });
         let first = own.as_ref().map(|own| own.name.node.as_str());
-        let Some(instance) = self.resolved(context, instance, own) else { return };
-        let instance = instance.as_ref();
+        let Some(resolved) = self.resolved(context, instance, own) else { return self.lose(instance) };
+        let instance = resolved.as_ref();
         let Some(definition) = machines.get(&instance.definition.node) else {
             let known = machines.keys().chain(self.machines.iter().map(|(name, ..)| &name.node));
             context.unknown_item(&instance.definition, "machine", known.map(String::as_str));
@@ -430,8 +430,8 @@ impl<'g> Builder<'_, 'g> {
             Original { name, definition, parameters: &built.parameters, profiles }
         });
         let first = own.as_ref().map(|own| own.name.node.as_str());
-        let Some(instance) = self.resolved(context, instance, own) else { return };
-        let instance = instance.as_ref();
+        let Some(resolved) = self.resolved(context, instance, own) else { return self.lose(instance) };
+        let instance = resolved.as_ref();
         let Some(definition) = tools.get(&instance.definition.node) else {
             let known = tools.keys().chain(self.tools.iter().map(|(name, ..)| &name.node));
             context.unknown_item(&instance.definition, "tool", known.map(String::as_str));
@@ -451,6 +451,14 @@ impl<'g> Builder<'_, 'g> {
         context.owner = job;
         self.expose(&instance.name, &built.scope);
         self.tools.push((instance.name.clone(), definition.name.node.clone(), built));
+    }
+
+    /// The names in a machine or tool that is an earlier one again which could not be built: there are such values, and they are not known.
+    fn lose(&mut self, instance: &ast::Instance) {
+        let ast::Instance { name, definition, .. } = instance;
+        let inner = self.scope.keys().filter_map(|known| within(known, &definition.node));
+        let lost: Vec<String> = inner.map(|inner| format!("{}.{inner}", name.node)).collect();
+        self.scope.extend(lost.into_iter().map(|name| (name, Value::Poison)));
     }
 
     /// What a machine or tool is one of; one that is an earlier one of the job again (`tool d = c(radius: 3 mm)`) has that one's

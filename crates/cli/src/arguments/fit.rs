@@ -75,7 +75,7 @@ pub(crate) struct Fit {
     /// Leave a further surface of the job where it is in its middle, or at both ends of its middle row: root (the tooth's depth), root=line (the root line), convex (its thickness)
     #[arg(long, value_name = "SURFACE[=line]", value_delimiter = ',', value_parser = kept, conflicts_with = "want")]
     pub(crate) keep: Vec<(String, KeptPlace)>,
-    /// Do not turn the points about z
+    /// Do not turn the points about z, or shift those of a rack along y
     #[arg(long)]
     pub(crate) as_it_lies: bool,
     /// Whether the tooth's thickness counts where both flanks are fitted: with `free` each has a turn of its own

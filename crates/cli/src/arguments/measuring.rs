@@ -70,10 +70,11 @@ fn margins(text: &str) -> Result<[f64; 2], String> {
 #[command(after_help = "\
 The deviation is signed, in um, plus is material: along the normal of the surface after --reference, at the points of that one's sample.
 A surface is named as in the spec, with its job where the file holds several: JOB.SURFACE. The frames of both are laid onto each
-other. Without --no-align the surface is first turned about z until both meet in the middle of the grid.
+other. Without --no-align the surface is first turned about z, a rack's shifted along y, until both meet in the middle of the grid.
 
 With --measured, the points of a file are compared with the surface: a CSV table with row and column as `flank measure` counts them,
-and x, y, z in mm or deviation_um. Without --no-align they are first turned about z until the sum of the squares is least.
+and x, y, z in mm or deviation_um. Without --no-align they are first turned about z, a rack's shifted
+along y, until the sum of the squares is least.
 
 Examples:
   flank deviation specs/bevel/ease_off_19x62.chain pinion.concave --reference conjugate.concave

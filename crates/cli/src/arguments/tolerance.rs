@@ -24,7 +24,7 @@ const UNITS: [(&str, ToleratedAmount); 11] = [
 #[command(after_help = "\
 Settings scatter by one standard deviation each, independently unless --correlation says more. From exact derivatives follows how the
 ease-off of the surface scatters: its slopes, crownings and bias, as `flank deviation` tells them of the changed surface from the nominal
-one, and its position, which is how far it is turned about z to meet in the middle. Of contacts that the surface takes part in: where
+one, and its position, which is how far it is turned about z, or a rack shifted, to meet in the middle. Of contacts that the surface takes part in: where
 they lie on the second flank, the error in the middle, and the height of its parabola over a pitch.
 
 Results: slope_profilewise, slope_lengthwise, crowning_profilewise, crowning_lengthwise, bias, position; of a contact
@@ -53,7 +53,7 @@ pub(crate) struct Tolerance {
     /// In the worst case each is off by so many standard deviations
     #[arg(long, value_name = "NUMBER", default_value_t = 3.0, value_parser = limits, allow_hyphen_values = true)]
     pub(crate) limits: f64,
-    /// Do not turn the changed surface about z until both meet in the middle of the grid
+    /// Do not turn the changed surface about z, or shift a rack's along y, until both meet in the middle of the grid
     #[arg(long)]
     pub(crate) no_align: bool,
     /// Also draw so many random cases, solve each anew, and tell where they show something else

@@ -163,6 +163,7 @@ pub fn gear(gear: &GearDrawing, options: &PictureOptions) -> Picture {
 ///     }],
 /// #   name: "side".into(),
 /// #   frame: "m.table".into(),
+/// #   layout: Default::default(),
 /// #   rows: Axis { label: "z".into(), count: 2 },
 /// #   columns: Axis { label: "rho".into(), count: 1 },
 /// #   unknowns: Vec::new(),

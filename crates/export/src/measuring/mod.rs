@@ -87,7 +87,8 @@ impl Hand {
         let up = sum((0..columns).filter_map(|j| way((0..rows).filter_map(|i| solved([i, j])))));
         let along = sum((0..rows).filter_map(|i| way((0..columns).filter_map(|j| solved([i, j])))));
         let solved = grid.points.iter().filter(|point| point.is_solved());
-        let seen = Seen::along(along, up, solved.map(|point| (point.position, Some(point.normal))))?;
+        let points = solved.map(|point| (point.position, Some(point.normal)));
+        let seen = Seen::along([along, up], points, grid.layout)?;
         let hand = if seen.to_the_right() > 0.0 { Hand::Right } else { Hand::Left };
         (seen.is_flank() && !is_thread(grid)).then_some(hand)
     }

@@ -39,6 +39,8 @@ pub struct Patch {
     pub name: String,
     /// The frame of positions and normals, such as `m.table`.
     pub frame: String,
+    /// How the spaces of its body follow each other.
+    pub layout: Layout,
     /// What index `i` runs over.
     pub rows: Axis,
     /// What index `j` runs over.
@@ -49,6 +51,42 @@ pub struct Patch {
     pub points: Vec<Point>,
     /// What more is known of the points, in the order it appears in files.
     pub fields: Vec<Field>,
+}
+
+/// How the spaces of a body follow each other, which says where its teeth have their tips.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Layout {
+    /// About z: tips lie away from it, or towards it.
+    #[default]
+    Round,
+    /// Beside each other along y, as those of a rack.
+    Straight {
+        /// Whether tips lie in the direction of x, or against it; where nothing says so, a flank leans to its tip.
+        tips_to_x: Option<bool>,
+    },
+}
+
+impl Layout {
+    /// Where a point lies in the section of the blank: along z, and the distance from it or x.
+    #[must_use]
+    pub fn section(self, [x, y, z]: [f64; 3]) -> [f64; 2] {
+        match self {
+            Layout::Round => [z, x.hypot(y)],
+            Layout::Straight { .. } => [z, x],
+        }
+    }
+
+    /// Beside a point: away from the axis, or x; from a space to the next.
+    #[must_use]
+    pub fn directions(self, [x, y, _]: [f64; 3]) -> [[f64; 3]; 2] {
+        match self {
+            Layout::Round => {
+                let radius = x.hypot(y).max(f64::MIN_POSITIVE);
+                [[x / radius, y / radius, 0.0], [-y / radius, x / radius, 0.0]]
+            }
+            Layout::Straight { .. } => [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
+        }
+    }
 }
 
 /// Something more that is known of each solved point of a patch: a curvature, a direction, a sensitivity.

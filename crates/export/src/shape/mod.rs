@@ -1,5 +1,6 @@
 //! What a patch looks like as a shape: vectors, its points as a mesh, what the sides of its grid are called.
 
+mod direction;
 mod mesh;
 mod sides;
 

@@ -1,14 +1,10 @@
 //! What the sides of a surface's grid are called: as its labels say, else from the shape.
 
-use std::f64::consts::{PI, TAU};
-
-use super::mesh::{Mesh, Node};
-use crate::points::dataset::Patch;
+use super::direction::{directions, rows_are_profile};
+use super::mesh::Mesh;
+use crate::points::dataset::{Layout, Patch};
 use crate::text::one_line;
-use crate::vector::{Vector, add, cross, dot, sub, unit};
-
-/// A tooth whose radius changes by less than this share of its way along the axis lies between two faces: a cone of 6 degrees.
-const LEAST_CONE: f64 = 0.1;
+use crate::vector::{Vector, add, cross, dot, unit};
 
 /// Of a flank's mean normal at least this much goes across the tooth, of a root's or a tip's less does. Of the jobs that ship, fillets,
 /// which lead from one to the other, have 0.4 or more, the most inclined root, of a hypoid pinion, has 0.3.
@@ -63,9 +59,8 @@ pub fn rows_follow_profile(patch: &Patch) -> Option<bool> {
     if let Some(labelled) = labelled_profile(patch) {
         return Some(labelled);
     }
-    let mesh = Mesh::of_patch(patch, 40);
-    let [rows, columns] = [true, false].map(|along_rows| Direction::of_mesh(&mesh, along_rows));
-    Some(rows_are_profile(&rows?, &columns?))
+    let [rows, columns] = directions(&Mesh::of_patch(patch, 40), patch.layout)?;
+    Some(rows_are_profile(&rows, &columns))
 }
 
 /// z and the distance from it.
@@ -108,8 +103,7 @@ fn labelled_profile(patch: &Patch) -> Option<bool> {
 /// What the sides are: as the labels name them; else from the shape.
 pub fn words(patch: &Patch, mesh: &Mesh) -> Vec<(Side, String)> {
     let named = named_sides(patch);
-    let directions = [true, false].map(|along_rows| Direction::of_mesh(mesh, along_rows));
-    let [Some(rows), Some(columns)] = directions else { return named };
+    let Some([rows, columns]) = directions(mesh, patch.layout) else { return named };
     let is_by_rows = labelled_profile(patch).unwrap_or_else(|| rows_are_profile(&rows, &columns));
     let (rows, columns) = ((rows, [Side::FirstRow, Side::LastRow]), (columns, [Side::FirstColumn, Side::LastColumn]));
     let ((profile, across), (length, along)) = if is_by_rows { (rows, columns) } else { (columns, rows) };
@@ -117,17 +111,25 @@ pub fn words(patch: &Patch, mesh: &Mesh) -> Vec<(Side, String)> {
         let word = |side: Side| named.iter().find(|(known, _)| *known == side).map(|(_, word)| word.clone());
         Some([word(sides[0])?, word(sides[1])?])
     };
-    let length_words = of(along).unwrap_or_else(|| length.length_words().map(str::to_owned));
+    let length_words = of(along).unwrap_or_else(|| length.length_words(patch.layout).map(str::to_owned));
     let profile_words = of(across).unwrap_or_else(|| {
         let way = if is_last(&length_words[0]) { length.chord.map(|part| -part) } else { length.chord };
-        let seen =
-            Seen::along(way, profile.chord, mesh.nodes.iter().flatten().map(|node| (node.position, node.normal)));
+        let nodes = mesh.nodes.iter().flatten().map(|node| (node.position, node.normal));
+        let seen = Seen::along([way, profile.chord], nodes, patch.layout);
         let between = seen.filter(|seen| !seen.is_flank());
         let words = match between {
             // its normals lie in the plane of the axis and lean nowhere
-            _ if length.winds() => in_order(ROOT_TIP, profile.way[1] > 0.0),
-            Some(seen) => in_order(["left side", "right side"], dot(profile.chord, seen.right()) > 0.0),
-            None => in_order(ROOT_TIP, profile.lean > 0.0),
+            _ if length.winds => in_order(ROOT_TIP, profile.way[1] > 0.0),
+            Some(seen) => {
+                let right = match patch.layout {
+                    Layout::Straight { tips_to_x: Some(is_up) } => {
+                        cross(way, [if is_up { 1.0 } else { -1.0 }, 0.0, 0.0])
+                    }
+                    _ => seen.right(),
+                };
+                in_order(["left side", "right side"], dot(profile.chord, right) > 0.0)
+            }
+            None => in_order(ROOT_TIP, profile.rises(patch.layout)),
         };
         words.map(str::to_owned)
     });
@@ -135,101 +137,13 @@ pub fn words(patch: &Patch, mesh: &Mesh) -> Vec<(Side, String)> {
     all.into_iter().flat_map(|(sides, words)| sides.into_iter().zip(words)).collect()
 }
 
-/// Whether rows follow the profile, by their shape: a thread winds along its length; a flank leans to its tip, most for its length in
-/// the direction of its profile.
-fn rows_are_profile(rows: &Direction, columns: &Direction) -> bool {
-    match [rows.winds(), columns.winds()] {
-        [false, true] => true,
-        [true, false] => false,
-        _ => rows.lean.abs() / rows.long() > columns.lean.abs() / columns.long(),
-    }
-}
-
-/// One direction of the grid.
-struct Direction {
-    /// From the first line to the last in space, summed over all that go that way, mm.
-    chord: Vector,
-    /// The same in the axial plane, on average: along z, along the radius, mm.
-    way: [f64; 2],
-    /// How far that goes about z on average, radians.
-    turn: f64,
-    /// How much the normals lean towards its end, less than 1.
-    lean: f64,
-}
-
-impl Direction {
-    fn of_mesh(mesh: &Mesh, along_rows: bool) -> Option<Direction> {
-        let (steps, lines) = if along_rows { (mesh.rows, mesh.columns) } else { (mesh.columns, mesh.rows) };
-        let line = |line: usize| -> Vec<Vector> {
-            let at = |step: usize| if along_rows { step * mesh.columns + line } else { line * mesh.columns + step };
-            (0..steps).filter_map(|step| Some(mesh.nodes[at(step)]?.position)).collect()
-        };
-        let known: Vec<Vec<Vector>> = (0..lines).map(line).filter(|line| !line.is_empty()).collect();
-        let ends = || known.iter().map(|line| [line[0], line[line.len() - 1]]);
-        let share = 1.0 / known.len().max(1) as f64;
-        let way = ends().fold([0.0; 2], |sum, [first, last]| {
-            let ([z, radius], [to_z, to_radius]) = (axial(first), axial(last));
-            [sum[0] + share * (to_z - z), sum[1] + share * (to_radius - radius)]
-        });
-        let long = way[0].hypot(way[1]);
-        let leans: Vec<f64> = mesh.nodes.iter().flatten().filter_map(|node| lean(node, way, long)).collect();
-        (long > 0.0).then(|| Direction {
-            chord: ends().fold([0.0; 3], |sum, [first, last]| add(sum, sub(last, first))),
-            way,
-            turn: known.iter().map(|line| share * turn(line)).sum(),
-            lean: leans.iter().sum::<f64>() / leans.len().max(1) as f64,
-        })
-    }
-
-    fn long(&self) -> f64 {
-        self.way[0].hypot(self.way[1])
-    }
-
-    /// A thread goes about its axis, a tooth past it.
-    fn winds(&self) -> bool {
-        self.turn > PI
-    }
-
-    /// What the ends are called along a tooth or a thread.
-    fn length_words(&self) -> [&'static str; 2] {
-        let [along_z, along_radius] = self.way;
-        let (words, rise) = if self.winds() {
-            (["lower end", "upper end"], along_z)
-        } else if along_radius.abs() < LEAST_CONE * along_z.abs() {
-            (["lower face", "upper face"], along_z)
-        } else {
-            (["inner end", "outer end"], along_radius)
-        };
-        in_order(words, rise > 0.0)
-    }
-}
-
-fn in_order([first, last]: [&'static str; 2], is_forward: bool) -> [&'static str; 2] {
+pub(super) fn in_order([first, last]: [&'static str; 2], is_forward: bool) -> [&'static str; 2] {
     if is_forward { [first, last] } else { [last, first] }
 }
 
 /// Whether a grid lies on a thread.
 pub fn is_thread(patch: &Patch) -> bool {
-    let mesh = Mesh::of_patch(patch, 40);
-    [true, false]
-        .into_iter()
-        .filter_map(|along_rows| Direction::of_mesh(&mesh, along_rows))
-        .any(|direction| direction.winds())
-}
-
-/// How much a normal leans along a way in the axial plane.
-fn lean(node: &Node, way: [f64; 2], long: f64) -> Option<f64> {
-    let normal = node.normal?;
-    let radius = node.position[0].hypot(node.position[1]);
-    let outward = (normal[0] * node.position[0] + normal[1] * node.position[1]) / radius;
-    let lean = (way[0] * normal[2] + way[1] * outward) / long;
-    lean.is_finite().then_some(lean)
-}
-
-/// How far a line goes about z, the shorter way round from each point to the next one, radians.
-fn turn(line: &[Vector]) -> f64 {
-    let angle = |position: Vector| position[1].atan2(position[0]);
-    line.windows(2).map(|pair| (angle(pair[1]) - angle(pair[0]) + PI).rem_euclid(TAU) - PI).sum::<f64>().abs()
+    directions(&Mesh::of_patch(patch, 40), patch.layout).is_some_and(|both| both.iter().any(|of| of.winds))
 }
 
 /// A surface of a tooth as it is seen along the tooth.
@@ -244,13 +158,18 @@ pub struct Seen {
 
 impl Seen {
     /// Of points with their normals, where the tooth goes `along` and the surface `up` from root to tip.
-    pub fn along(along: Vector, up: Vector, points: impl Iterator<Item = (Vector, Option<Vector>)>) -> Option<Seen> {
+    pub fn along(
+        [along, up]: [Vector; 2],
+        points: impl Iterator<Item = (Vector, Option<Vector>)>,
+        layout: Layout,
+    ) -> Option<Seen> {
         let sums = points.fold([[0.0; 3]; 2], |[positions, normals], (position, normal)| {
             [add(positions, position), add(normals, normal.unwrap_or_default())]
         });
-        let [[x, y, _], normals] = sums;
+        let [positions, normals] = sums;
+        let [_, beside] = layout.directions(positions);
         // from root to tip, as the tooth lies and not as this surface leans
-        let height = cross(along, [-y, x, 0.0]);
+        let height = cross(along, beside);
         let up = if dot(height, up) < 0.0 { height.map(|part| -part) } else { height };
         Some(Seen { normal: unit(normals)?, up, across: unit(cross(along, up))? })
     }

@@ -127,7 +127,7 @@ fn largest_rectangle(patch: &Patch) -> Option<([usize; 2], [usize; 2])> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::points::dataset::{Axis, Outcome};
+    use crate::points::dataset::{Axis, Layout, Outcome};
 
     fn patch(rows: &[&str]) -> Patch {
         let axis = |count| Axis { label: String::new(), count };
@@ -145,6 +145,7 @@ mod tests {
         Patch {
             name: "flank".into(),
             frame: "work".into(),
+            layout: Layout::Round,
             rows: axis(rows.len()),
             columns: axis(rows[0].len()),
             unknowns: Vec::new(),

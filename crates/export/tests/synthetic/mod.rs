@@ -31,6 +31,7 @@ pub(crate) fn grid(
     Patch {
         name: name.into(),
         frame: "m.table".into(),
+        layout: flank_export::Layout::Round,
         rows: axis(labels[0], rows),
         columns: axis(labels[1], columns),
         unknowns: vec![

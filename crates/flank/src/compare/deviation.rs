@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use flank_chain_dsl::Coordinate;
 use flank_expr::Graph;
-use flank_solver::{CutBy, Outcome, SurfacePoint};
+use flank_solver::{Alignment, CutBy, Outcome, SurfacePoint};
 
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::inspect;
@@ -129,22 +129,20 @@ pub(crate) fn measure<'j, 'g>(
     let counts = sample.counts;
     let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), session);
     session.check()?;
-    let starts = Starts::beside(surface.surface, (&Asked::of_sample(sample), &points));
+    let alignment = from.alignment();
+    let starts = Starts::beside(surface.surface, (&Asked::of_sample(sample), &points), alignment);
     let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), session);
-    let deviation = flank_solver::Deviation::new(&bound(surface.job, surface.surface))
+    let deviation = flank_solver::Deviation::new(&bound(surface.job, surface.surface), alignment)
         .expect("a job without errors leaves nothing unbound");
     let middle = starts::middle(counts);
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
-    let turn = both.and_then(|(point, near)| deviation.turn_to(point.position, near));
-    let done = if no_align { Some(0.0) } else { turn };
-    let is_opposite = both.zip(done).is_some_and(|((point, near), turn)| {
-        let [x, y, z] = near.normal;
-        let (sin, cos) = turn.sin_cos();
-        let turned = [cos * x - sin * y, sin * x + cos * y, z];
-        turned.iter().zip(point.normal).map(|(a, b)| a * b).sum::<f64>() < 0.0
+    let motion = both.and_then(|(point, near)| deviation.motion_to(point.position, near));
+    let done = if no_align { Some(0.0) } else { motion };
+    let is_opposite = both.zip(done).is_some_and(|((point, near), motion)| {
+        alignment.turned(near.normal, motion).iter().zip(point.normal).map(|(a, b)| a * b).sum::<f64>() < 0.0
     });
     let deviations = match done {
-        Some(turn) => deviation.map(&points, &near, turn).into_iter().map(|off| Some(1e3 * off?)).collect(),
+        Some(motion) => deviation.map(&points, &near, motion).into_iter().map(|off| Some(1e3 * off?)).collect(),
         None => vec![None; points.len()],
     };
     let ends = [points.get(middle), near.get(middle)].map(|point| point.map(|point| point.outcome));
@@ -158,8 +156,8 @@ pub(crate) fn measure<'j, 'g>(
         counts,
         cut_away: points.iter().zip(&near).filter(is_cut).count(),
         points,
-        turn,
-        is_turned: !no_align,
+        motion,
+        is_moved: !no_align,
         deviations,
         is_opposite,
         refused: if ambiguous.is_empty() { apart.into_iter().collect() } else { ambiguous },
@@ -191,7 +189,11 @@ fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> NotDone {
         of.map(|of| of.whole_name())
     };
     let [point, near] = ends;
-    let way_out = "the option `no_align` does without the turn that brings both to meet there";
+    let (moved, motion) = match of[1].alignment() {
+        Alignment::Turn => ("turned about z", "turn"),
+        Alignment::Shift => ("shifted along y", "shift"),
+    };
+    let way_out = format!("the option `no_align` does without the {motion} that brings both to meet there");
     let message = match (point, near) {
         (Some(point), _) if point != Outcome::Solved => {
             format!("no deviation: `{from}` has no point in the middle of its grid ({}); {way_out}", point.word())
@@ -200,8 +202,7 @@ fn apart(of: [Named<'_, '_>; 2], ends: [Option<Outcome>; 2]) -> NotDone {
             format!("no deviation: `{surface}` is cut away where the middle of the grid of `{from}` is; {way_out}")
         }
         _ => format!(
-            "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` is turned \
-             about z"
+            "no deviation: `{surface}` and `{from}` have no point in common in the middle of the grid, however `{surface}` is {moved}"
         ),
     };
     no_deviation(&surface, message)

@@ -33,12 +33,14 @@ pub struct DeviationResult {
     pub asked: usize,
     /// Points at which the deviation is known.
     pub known: usize,
-    /// About z: until both meet in the middle of the grid, or the measured points lie nearest; null where they do not meet.
+    /// About z: until both meet in the middle of the grid, or the measured points lie nearest; null where they do not meet, and of a rack.
     pub turn_deg: Option<f64>,
-    /// Whether that was done.
+    /// Whether the turn, or the shift, was done.
     pub turned: bool,
     /// The same on the circle through the middle of the grid.
     pub turn_mm: Option<f64>,
+    /// Of a rack, whose spaces lie beside each other, along y instead of the turn; null of all else.
+    pub shift_mm: Option<f64>,
     /// The smallest; null where nothing is known.
     pub lowest_um: Option<f64>,
     /// The largest.
@@ -81,6 +83,11 @@ pub struct EaseOffDirection {
 }
 
 impl DeviationResult {
+    /// How far the surface is moved in the middle of the grid: turned, or shifted, mm.
+    pub(crate) fn moved_mm(&self) -> Option<f64> {
+        self.turn_mm.or(self.shift_mm)
+    }
+
     /// Rows and columns of the grid.
     pub fn counts(&self) -> [usize; 2] {
         self.counts
@@ -129,8 +136,11 @@ impl fmt::Display for DeviationResult {
             self.held()
         )?;
         writeln!(f, "  points       {known} of {asked}")?;
+        let done = if self.turned { "" } else { " (not done)" };
+        if let Some(shift) = self.shift_mm {
+            writeln!(f, "  shift along y {} mm{done}", fixed(shift, 6))?;
+        }
         if let (Some(turn), Some(way)) = (self.turn_deg, self.turn_mm) {
-            let done = if self.turned { "" } else { " (not done)" };
             let [turn, way] = [turn, way].map(|value| fixed(value, 6));
             writeln!(f, "  turn about z {turn} deg, {way} mm on the circle through the middle{done}")?;
         }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use flank_chain_dsl::Files;
 use flank_export::{Measured as Reading, MeasuredGrid, read_measured};
-use flank_solver::{Outcome, SurfacePoint, beside};
+use flank_solver::{Alignment, Outcome, SurfacePoint, beside};
 
 use crate::compare::map::Named;
 use crate::compare::measure::Placed;
@@ -80,10 +80,14 @@ impl Gauged {
     }
 
     /// # Errors
-    /// If a point, turned about z, does not belong to its place.
-    pub(crate) fn check_places(&self, frame: &str, turn: f64) -> Result<(), Failure> {
+    /// If a point, moved by so much, does not belong to its place.
+    pub(crate) fn check_places(&self, of: Named<'_, '_>, motion: f64) -> Result<(), Failure> {
         let Gauged { shown, counts: [rows, columns], .. } = self;
-        let Some((at, off, half)) = misplaced(&self.positions, &self.nominal, self.counts, turn) else { return Ok(()) };
+        let Some((at, off, half)) = misplaced(&self.positions, &self.nominal, self.counts, (of.alignment(), motion))
+        else {
+            return Ok(());
+        };
+        let frame = &of.surface.frame;
         let [row, column] = [at / columns + 1, at % columns + 1];
         Err(format!(
             "{shown}: row {row}, column {column} lies {off:.4} mm beside its nominal point, and half the way to the next one is {half:.4} mm: \
@@ -113,7 +117,7 @@ fn misplaced(
     measured: &[Option<[f64; 3]>],
     nominal: &[SurfacePoint],
     [rows, columns]: [usize; 2],
-    turn: f64,
+    motion: (Alignment, f64),
 ) -> Option<(usize, f64, f64)> {
     let half_gap = |at: usize| {
         let (row, column) = (at / columns, at % columns);
@@ -127,7 +131,7 @@ fn misplaced(
         let next = along.into_iter().chain(across).flatten().filter(solved);
         next.map(|next| 0.5 * gap(next)).reduce(f64::min)
     };
-    let each = beside(measured, nominal, turn).into_iter().enumerate();
+    let each = beside(measured, nominal, motion).into_iter().enumerate();
     each.filter_map(|(at, off)| Some((at, off?, half_gap(at)?))).find(|(_, off, half)| off > half)
 }
 

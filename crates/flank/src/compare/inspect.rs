@@ -21,12 +21,12 @@ pub(crate) fn inspect<'j, 'g>(
     let area = GaugedArea { rows: request.rows, columns: request.columns, margins: request.margins() };
     let gauged = Gauged::read(of, (request.jobs.project.files(), file), area, session, origin)?;
     let Gauged { shown, counts, nominal, positions, .. } = &gauged;
-    let inspection =
-        Inspection::new(&solve::bound(of.job, of.surface)).expect("a job without errors leaves nothing unbound");
+    let inspection = Inspection::new(&solve::bound(of.job, of.surface), of.alignment())
+        .expect("a job without errors leaves nothing unbound");
     let _working = session.begin(format!("holding {shown} against {}", of.surface.name))?;
-    let turn = inspection.best_turn(positions, nominal);
-    gauged.check_places(&of.surface.frame, turn.unwrap_or(0.0))?;
-    let done = if request.no_align { 0.0 } else { turn.unwrap_or(0.0) };
+    let motion = inspection.best_motion(positions, nominal);
+    gauged.check_places(of, motion.unwrap_or(0.0))?;
+    let done = if request.no_align { 0.0 } else { motion.unwrap_or(0.0) };
     let deviations = inspection.deviations(positions, nominal, done);
     Ok(DeviationMap {
         held: ComparedWith::File { name: shown.clone(), points: positions.iter().flatten().count() },
@@ -34,8 +34,8 @@ pub(crate) fn inspect<'j, 'g>(
         labels: gauged.labels.clone(),
         counts: *counts,
         points: gauged.nominal,
-        turn,
-        is_turned: !request.no_align,
+        motion,
+        is_moved: !request.no_align,
         deviations: deviations.into_iter().map(|off| Some(1e3 * off?)).collect(),
         is_opposite: false,
         refused: Vec::new(),

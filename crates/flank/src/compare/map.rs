@@ -3,7 +3,7 @@
 use flank_chain_dsl::{GeneratedSurface, Job};
 use flank_draw::{Picture, PictureOptions, deviation_map};
 use flank_export::{Axis, Dataset, Field, Patch, Values, fixed};
-use flank_solver::{EaseOff, Outcome, SurfacePoint};
+use flank_solver::{Alignment, EaseOff, Outcome, SurfacePoint};
 
 use crate::compare::deviation_result::{DeviationResult, EaseOffDirection};
 use crate::project::answer::Timing;
@@ -13,6 +13,7 @@ use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{DeviationRequest, JobSelection};
 use crate::project::spec::Origin;
+use crate::solve::blank;
 use crate::solve::starts;
 use crate::solve::{header, patch};
 
@@ -28,6 +29,10 @@ pub(crate) struct Named<'j, 'g> {
 impl Named<'_, '_> {
     pub(crate) fn whole_name(&self) -> String {
         format!("{}.{}", self.job.name, self.surface.name)
+    }
+
+    pub(crate) fn alignment(&self) -> Alignment {
+        blank::alignment(self.job, self.surface)
     }
 }
 
@@ -71,10 +76,10 @@ pub(crate) struct DeviationMap<'j, 'g> {
     pub(crate) labels: [String; 2],
     pub(crate) counts: [usize; 2],
     pub(crate) points: Vec<SurfacePoint>,
-    /// About z, radians: until both meet in the middle of the grid, or measured points lie nearest.
-    pub(crate) turn: Option<f64>,
-    /// Whether it was turned.
-    pub(crate) is_turned: bool,
+    /// Until both meet in the middle of the grid, or measured points lie nearest.
+    pub(crate) motion: Option<f64>,
+    /// Whether it was moved.
+    pub(crate) is_moved: bool,
     /// um
     pub(crate) deviations: Vec<Option<f64>>,
     /// Whether the normals of two surfaces face apart where they meet in the middle: one is the other's opposite flank.
@@ -195,6 +200,10 @@ impl DeviationMap<'_, '_> {
                 crowning_um: of.crownings[k],
             })
         };
+        let (turn, shift) = match self.from.alignment() {
+            Alignment::Turn => (self.motion, None),
+            Alignment::Shift => (None, self.motion),
+        };
         let (surface, measured, job) = match &self.held {
             ComparedWith::Surface(of) => (Some(of.surface.name.clone()), None, Some(of.job.name.clone())),
             ComparedWith::File { name, .. } => (None, Some(name.clone()), None),
@@ -209,9 +218,10 @@ impl DeviationMap<'_, '_> {
             from_frame: self.from.surface.frame.clone(),
             asked: self.points.len(),
             known: self.known().count(),
-            turn_deg: self.turn.map(f64::to_degrees),
-            turned: self.is_turned,
-            turn_mm: self.turn.map(|turn| self.middle_radius() * turn),
+            turn_deg: turn.map(f64::to_degrees),
+            turned: self.is_moved,
+            turn_mm: turn.map(|turn| self.middle_radius() * turn),
+            shift_mm: shift,
             lowest_um: spread.map(|of| of[0]),
             highest_um: spread.map(|of| of[1]),
             rms_um: spread.map(|of| of[2]),
@@ -281,23 +291,26 @@ impl DeviationMap<'_, '_> {
             values: Values::Scalars(self.deviations.iter().copied().collect()),
         };
         let mut header = header(&self.jobs(), which, origin);
-        let turn = self.turn.filter(|_| self.is_turned).map_or(0.0, f64::to_degrees);
-        header.conventions.push(format!("{} turned about z by {turn:?} deg", self.held.name()));
+        let (name, motion) = (self.held.name(), self.motion.filter(|_| self.is_moved).unwrap_or_default());
+        header.conventions.push(match self.from.alignment() {
+            Alignment::Turn => format!("{name} turned about z by {:?} deg", motion.to_degrees()),
+            Alignment::Shift => format!("{name} shifted along y by {motion:?} mm"),
+        });
         Dataset { header, patches: vec![Patch { fields: vec![field], ..patch }] }
     }
 
     /// How a picture is to be read.
     pub(crate) fn note(&self) -> String {
-        let turn = self.turn.filter(|_| self.is_turned);
-        let turn = turn.map(|turn| {
-            format!(
-                "; {} is turned by {} deg about z, {} mm on the circle through the middle",
-                self.held.name(),
-                fixed(turn.to_degrees(), 6),
-                fixed(self.middle_radius() * turn, 6)
-            )
+        let name = self.held.name();
+        let told = self.motion.filter(|_| self.is_moved).map(|motion| match self.from.alignment() {
+            Alignment::Turn => format!(
+                "; {name} is turned by {} deg about z, {} mm on the circle through the middle",
+                fixed(motion.to_degrees(), 6),
+                fixed(self.middle_radius() * motion, 6)
+            ),
+            Alignment::Shift => format!("; {name} is shifted by {} mm along y", fixed(motion, 6)),
         });
-        format!("{NOTE}{}", turn.unwrap_or_default())
+        format!("{NOTE}{}", told.unwrap_or_default())
     }
 
     pub(crate) fn title(&self) -> String {

@@ -6,7 +6,7 @@
 
 use flank_draw::{DrawnContact, MilledPairDrawing, PassChart};
 use flank_export::text::shown_unit;
-use flank_export::{Axis, Field, Header, Outcome as Written, Patch, Point, Values, fixed};
+use flank_export::{Axis, Field, Header, Layout, Outcome as Written, Patch, Point, Values, fixed};
 use flank_solver::{ContactPoint, Gap, GapProblem, Outcome, RollingPair, SurfacePoint};
 use rayon::prelude::*;
 
@@ -403,6 +403,7 @@ impl Search<'_> {
         Patch {
             name: format!("{} {name}", self.surface),
             frame: self.frame.to_string(),
+            layout: Layout::Round,
             rows: Axis { label: of_rows, count: rows },
             columns: Axis { label: of_columns, count: PATTERN_COLUMNS },
             unknowns: Vec::new(),

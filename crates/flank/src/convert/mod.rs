@@ -255,6 +255,13 @@ impl<'t, 'g> Plan<'t, 'g> {
         let followers = machine.axes.iter().filter(|axis| axis.law != axis.variable);
         let laws: Vec<(Expr<'g>, Expr<'g>)> = followers.map(|axis| (axis.variable, axis.law)).collect();
         let chain = chain.substituted(&laws);
+        if is_mirrored(&chain) != is_mirrored(chosen.driven()) {
+            return Err(format!(
+                "{} is of the other hand: from {work} to {tool} it makes a mirror image of what leads from {} to {} in {}, and no motion is its \
+                 own mirror image; `mirror` one of these frames in a variant of the machine, or carry the job over to a machine of its own hand",
+                machine.name, chosen.work, chosen.tool, job.name
+            ));
+        }
         let settings = settings::wanted(target, &chain, fit)?;
         let open: Vec<Expr<'g>> = settings.iter().map(|setting| setting.variable).collect();
         let bindings = job.bindings().into_iter().chain(target.bindings_beside(&open)).collect::<Vec<_>>();
@@ -492,6 +499,11 @@ impl<'j, 'g> Conversion<'j, 'g> {
     pub(crate) fn failures(&self) -> Vec<NotDone> {
         failures::told(self)
     }
+}
+
+/// Whether what a chain leads to is a mirror image, wherever its axes stand: the determinant of its rotation is -1.
+fn is_mirrored(chain: &Chain<'_>) -> bool {
+    chain.steps().iter().filter(|step| matches!(step, Step::Mirror(_))).count() % 2 == 1
 }
 
 fn target_axis<'g>(axis: &Axis<'g>) -> TargetAxis<'g> {

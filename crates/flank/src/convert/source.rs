@@ -67,6 +67,11 @@ pub(super) struct Chosen<'j, 'g> {
 }
 
 impl<'j, 'g> Chosen<'j, 'g> {
+    /// From work to tool, in motions.
+    pub(super) fn driven(&self) -> &'j Chain<'g> {
+        &self.mates[0].generation.driven
+    }
+
     /// # Errors
     /// In words, if it is not clear which tool is meant, or nothing moves.
     pub(super) fn of_job(job: &'j Job<'g>, asked: Option<&str>) -> Result<Chosen<'j, 'g>, String> {

@@ -190,7 +190,7 @@ fn without_tools(text: Option<&str>) -> Failure {
     let tools: Vec<_> = document.iter().flat_map(|document| Component::all(document.root_element(), TOOL)).collect();
     let known = if tools.is_empty() { String::new() } else { format!("; there is: {}", listed(&tools)) };
     Failure::Request(format!(
-        "say which tool has which blades: `outside` for the concave flank, `inside` for the convex one{known}"
+        "say which tool has which blades: option `outside` for the concave flank, option `inside` for the convex one{known}"
     ))
 }
 
@@ -307,7 +307,7 @@ fn machine(settings: &Component<'_, '_>, arguments: &ImportRequest, head: &mut S
         }
         let Some(meaning) = arguments.coefficients else {
             return Err(format!(
-                "{}: `{attribute}` is not zero; say what its numbers are, for REXS does not: coefficients `taylor` or `polynomial`",
+                "{}: `{attribute}` is not zero; say what its numbers are, for REXS does not: option `coefficients taylor` or option `coefficients polynomial`",
                 settings.described()
             ));
         };
@@ -358,16 +358,46 @@ fn cutter(tool: &Component<'_, '_>) -> Result<String, String> {
         format!("blade_angle: {angle:?} deg"),
         format!("edge_radius: {edge:?} mm"),
     ];
-    let curved = tool.number("blade_spheric_radius", "mm")?.filter(|radius| *radius > 0.0);
-    if let Some(sphere) = curved {
-        lines.push(format!("blade_radius: {sphere:?} mm"));
+    // of a straight blade it may be zero
+    let curved = tool.number("blade_spheric_radius", "mm")?.filter(|radius| *radius != 0.0);
+    if let Some(sphere) = curved.filter(|sphere| *sphere < 0.0) {
+        return Err(format!(
+            "{}: blade_spheric_radius is {sphere} mm; a curved blade of face_mill has a positive one, and what a negative one is REXS does \
+             not say",
+            tool.described()
+        ));
     }
-    let height = if curved.is_some() { "blade_length" } else { "blade_height" };
-    if let Some(profile) = tool.number("blade_profile_height", "mm")? {
-        lines.push(format!("{height}: {profile:?} mm"));
+    lines.extend(curved.map(|sphere| format!("blade_radius: {sphere:?} mm")));
+    match (tool.number("blade_profile_height", "mm")?, curved) {
+        (Some(height), None) => lines.push(format!("blade_height: {height:?} mm")),
+        (Some(height), Some(sphere)) => {
+            let length = length_of_blade(height, (angle.to_radians(), sphere, edge)).ok_or_else(|| {
+                format!(
+                    "{}: an arc of {sphere} mm does not reach the blade_profile_height {height} mm",
+                    tool.described()
+                )
+            })?;
+            lines.push(format!("blade_length: {length:?} mm"));
+        }
+        (None, _) => {}
     }
     let kind = if curved.is_some() { "face_mill" } else { "face_mill_straight" };
     Ok(format!("{kind}(\n        {}\n    )\n", lines.join(",\n        ")))
+}
+
+/// How long the profile of a curved blade is up to a height over the plane of the tips: the rounding of the edge and the arc. `None` if the
+/// arc does not come so high, or the rounding goes beyond.
+fn length_of_blade(height: f64, (blade_angle, blade_radius, edge_radius): (f64, f64, f64)) -> Option<f64> {
+    // angles of the arc, from the direction in which the cutter's radius grows
+    let over = blade_radius * blade_angle.sin();
+    let touching = ((over + edge_radius) / (blade_radius + edge_radius)).asin();
+    let end = ((over + height) / blade_radius).asin();
+    // the difference of angles that hardly differ, of blades that are nearly straight
+    let turn = |height: f64, to: f64| 2.0 * (height / (2.0 * blade_radius * (0.5 * (blade_angle + to)).cos())).asin();
+    let edge_height = edge_radius * blade_radius * (1.0 - blade_angle.sin()) / (blade_radius + edge_radius);
+    let arc = blade_radius * (turn(height, end) - turn(edge_height, touching));
+    let edge = edge_radius * (std::f64::consts::FRAC_PI_2 - touching);
+    (arc > 0.0).then_some(edge + arc)
 }
 
 /// A text of the file as it may stand in a comment: nothing in it ends the line, and no line is endless.
@@ -424,14 +454,22 @@ impl<'a, 'i> Component<'a, 'i> {
         match (id, all.as_slice()) {
             (_, []) => Err(format!("there is no component `{kind}` in the file")),
             (None, [only]) => Ok(*only),
-            (None, _) => {
-                Err(format!("there are several components `{kind}`; say which by the id of `{option}`: {}", known()))
+            (None, _) => Err(format!(
+                "there are several components `{kind}`; say which by its id, option `{option}`: {}",
+                known()
+            )),
+            (Some(id), _) => {
+                let own: Vec<_> = all.iter().filter(|component| component.0.attribute("id") == Some(id)).collect();
+                match own[..] {
+                    [one] => Ok(*one),
+                    [] => Err(format!("there is no `{kind}` with the id {id}; there is: {}", known())),
+                    [first, second, ..] => Err(format!(
+                        "there are several `{kind}` with the id {id}, in lines {} and {}: which one is meant?",
+                        line(first.0),
+                        line(second.0)
+                    )),
+                }
             }
-            (Some(id), _) => all
-                .iter()
-                .find(|component| component.0.attribute("id") == Some(id))
-                .copied()
-                .ok_or_else(|| format!("there is no `{kind}` with the id {id}; there is: {}", known())),
         }
     }
 
@@ -442,13 +480,32 @@ impl<'a, 'i> Component<'a, 'i> {
         format!("{kind} {id}{}", name.unwrap_or_default())
     }
 
-    fn attribute(&self, name: &str) -> Option<Node<'a, 'i>> {
-        self.0.children().find(|node| node.has_tag_name("attribute") && node.attribute("id") == Some(name))
+    /// # Errors
+    /// If it stands there several times, and not as the same.
+    fn attribute(&self, name: &str) -> Result<Option<Node<'a, 'i>>, String> {
+        let is_meant = |node: &Node<'_, '_>| node.has_tag_name("attribute") && node.attribute("id") == Some(name);
+        let mut all = self.0.children().filter(is_meant);
+        let Some(first) = all.next() else { return Ok(None) };
+        let said = |node: Node<'a, 'i>| {
+            let parts = node.descendants().flat_map(|node| [node.attribute("unit"), node.attribute("code")]);
+            (parts.collect::<Vec<_>>(), words(node))
+        };
+        match all.find(|other| said(*other) != said(first)) {
+            None => Ok(Some(first)),
+            Some(other) => Err(format!(
+                "{}: `{name}` is there twice, in line {} as `{}` and in line {} as `{}`: which one is meant?",
+                self.described(),
+                line(first),
+                on_one_line(&words(first).join(" ")),
+                line(other),
+                on_one_line(&words(other).join(" "))
+            )),
+        }
     }
 
     /// A number in the unit that is wanted; other units are refused.
     fn number(&self, name: &str, unit: &str) -> Result<Option<f64>, String> {
-        let Some(node) = self.attribute(name) else { return Ok(None) };
+        let Some(node) = self.attribute(name)? else { return Ok(None) };
         let given = match node.attribute("unit").unwrap_or("none") {
             "°" => "deg",
             "none" => "",
@@ -456,11 +513,11 @@ impl<'a, 'i> Component<'a, 'i> {
         };
         if given != unit {
             let wanted = if unit.is_empty() { "none" } else { unit };
-            return Err(format!(
-                "{}: `{name}` is given in {}, REXS has it in {wanted}",
-                self.described(),
-                on_one_line(given)
-            ));
+            let given = match given {
+                "" => "without a unit".to_string(),
+                given => format!("in {}", on_one_line(given)),
+            };
+            return Err(format!("{}: `{name}` is given {given}, REXS has it in {wanted}", self.described()));
         }
         self.parsed(name, node.text().unwrap_or_default()).map(Some)
     }
@@ -471,8 +528,7 @@ impl<'a, 'i> Component<'a, 'i> {
         let of = self.described();
         for node in attributes {
             let name = on_one_line(node.attribute("id").unwrap_or("?"));
-            let texts = node.descendants().filter(Node::is_text).filter_map(|text| text.text());
-            let words: Vec<&str> = texts.flat_map(str::split_whitespace).collect();
+            let words = words(node);
             if !known.contains(&name.as_str()) && !words.is_empty() {
                 let unit = node.attribute("unit").filter(|unit| *unit != "none").unwrap_or_default();
                 let value = format!("{} {}", on_one_line(&words.join(" ")), on_one_line(unit));
@@ -483,7 +539,7 @@ impl<'a, 'i> Component<'a, 'i> {
 
     /// The numbers of an array, or a single one; none if it is not there.
     fn coefficients(&self, name: &str) -> Result<Vec<f64>, String> {
-        let Some(node) = self.attribute(name) else { return Ok(Vec::new()) };
+        let Some(node) = self.attribute(name)? else { return Ok(Vec::new()) };
         let array = node.children().find(|inner| inner.has_tag_name("array"));
         if let Some((array, code)) = array.and_then(|array| Some((array, array.attribute("code")?))) {
             let text: String = array.text().unwrap_or_default().split_whitespace().collect();
@@ -507,6 +563,17 @@ impl<'a, 'i> Component<'a, 'i> {
             format!("{}: `{name}` is `{}`, which is no number", self.described(), on_one_line(text.trim()))
         })
     }
+}
+
+/// What stands in an element.
+fn words<'a>(node: Node<'a, '_>) -> Vec<&'a str> {
+    let texts = node.descendants().filter(Node::is_text).filter_map(|text| text.text());
+    texts.flat_map(str::split_whitespace).collect()
+}
+
+/// Where an element stands in the file.
+fn line(node: Node<'_, '_>) -> u32 {
+    node.document().text_pos_at(node.range().start).row
 }
 
 /// The numbers of a coded array: Base64 of little-endian numbers, one after the other.

@@ -4,7 +4,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
 use flank_export::{Axis, Outcome, Patch, Point, Unit, Unknown};
 use flank_solver::{CutBy, SurfacePoint};
 
-use crate::solve::reasons;
+use crate::solve::{blank, reasons};
 
 /// A grid of points of a surface, without further fields.
 pub(crate) fn patch(
@@ -18,6 +18,7 @@ pub(crate) fn patch(
     Patch {
         name: name.to_string(),
         frame: surface.frame.clone(),
+        layout: blank::layout(job, surface),
         rows,
         columns,
         unknowns: unknowns.map(|u| Unknown { name: u.name.clone(), unit: unit(u.dimension) }).collect(),

@@ -3,11 +3,11 @@
 use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Coordinate, GeneratedSurface, Sample};
-use flank_solver::{Outcome, SurfacePoint};
+use flank_solver::{Alignment, Outcome, SurfacePoint};
 
 /// Coordinates that are functions of the place alone, on whatever surface it lies.
 const OF_PLACES: [&str; 5] = ["x", "y", "z", "rho", "polar_angle"];
-/// Points are given by radius and height, which a turn about z leaves as they are, unless such a turn moves them along their
+/// Points are given by the two coordinates that the motion of their body leaves as they are, of a turn about z radius and height, unless it moves them along their
 /// normals by less than this share of what another way does: hardly more than nothing, as on a root cylinder or an end face.
 const HARDLY: f64 = 0.02;
 
@@ -40,11 +40,15 @@ pub(crate) struct Starts<'g> {
 impl<'g> Starts<'g> {
     /// Of a surface beside the points of a sample of another one: by the sample's own coordinates where these are functions of the
     /// place, else by two that tell the points apart. Names of unknowns say nothing here: another tool's `u` is another place.
-    pub(crate) fn beside(surface: &GeneratedSurface<'g>, (asked, points): (&Asked, &[SurfacePoint])) -> Starts<'g> {
+    pub(crate) fn beside(
+        surface: &GeneratedSurface<'g>,
+        (asked, points): (&Asked, &[SurfacePoint]),
+        alignment: Alignment,
+    ) -> Starts<'g> {
         let (names, targets) = if asked.is_of_places() {
             (asked.names.each_ref().map(String::as_str), asked.targets.clone())
         } else {
-            let names = telling(points);
+            let names = telling(points, alignment);
             (names, values(names, points, middle(asked.counts)))
         };
         let halfway = targets.get(middle(asked.counts)).copied().unwrap_or_default();
@@ -65,21 +69,28 @@ fn solved(points: &[SurfacePoint]) -> impl Iterator<Item = &SurfacePoint> {
     points.iter().filter(|point| point.outcome == Outcome::Solved)
 }
 
-/// The two of radius, angle and height of which the points' normals have least.
-fn telling(points: &[SurfacePoint]) -> [&'static str; 2] {
+/// The two of radius, angle and height, of a rack of x, y and z, of which the points' normals have least.
+fn telling(points: &[SurfacePoint], alignment: Alignment) -> [&'static str; 2] {
+    let [out, along] = match alignment {
+        Alignment::Turn => ["rho", "polar_angle"],
+        Alignment::Shift => ["x", "y"],
+    };
     let mut sums = [0.0; 3];
     for SurfacePoint { position: [x, y, _], normal: [nx, ny, nz], .. } in solved(points) {
         let radius = x.hypot(*y).max(f64::MIN_POSITIVE);
-        let parts = [(x * nx + y * ny) / radius, (x * ny - y * nx) / radius, *nz];
+        let parts = match alignment {
+            Alignment::Turn => [(x * nx + y * ny) / radius, (x * ny - y * nx) / radius, *nz],
+            Alignment::Shift => [*nx, *ny, *nz],
+        };
         sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part.abs());
     }
     let [radial, tangential, axial] = sums;
     if tangential >= HARDLY * radial.max(axial) {
-        ["rho", "z"]
+        [out, "z"]
     } else if radial >= axial {
-        ["polar_angle", "z"]
+        [along, "z"]
     } else {
-        ["rho", "polar_angle"]
+        [out, along]
     }
 }
 
@@ -93,6 +104,8 @@ fn values(names: [&str; 2], points: &[SurfacePoint], middle: usize) -> Vec<[f64;
         let [x, y, z] = point.position;
         match name {
             "rho" => x.hypot(y),
+            "x" => x,
+            "y" => y,
             "z" => z,
             _ => angle(point) + TAU * ((about - angle(point)) / TAU).round(),
         }

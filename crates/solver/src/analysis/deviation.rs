@@ -4,6 +4,7 @@ use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, LANES, TapeError};
 use rayon::prelude::*;
 
+use crate::analysis::alignment::Alignment;
 use crate::equations::solution::{Outcome, Range};
 use crate::equations::system::System;
 use crate::newton::batch::LaneNewton;
@@ -13,45 +14,45 @@ use crate::surface::points::SurfacePoint;
 
 /// Distances along a normal are looked for up to here, mm.
 pub(crate) const FARTHEST: Range = Range { low: -200.0, high: 200.0 };
-/// Turns about the axis are looked for in here.
-const A_TURN: Range = Range { low: -2.0 * std::f64::consts::PI, high: 2.0 * std::f64::consts::PI };
 /// Points that a thread takes at a time.
 const TILE: usize = 16 * LANES;
 
-/// A surface that is compared with points of another one: of the same body in the same frame, but for a turn about its z axis.
+/// A surface that is compared with points of another one: of the same body in the same frame, but for
+/// the motion that lays it onto its place.
 #[derive(Clone, Debug)]
 pub struct Deviation {
-    /// Unknowns of the surface and a distance; the point, the normal and the turn are parameters.
+    /// Unknowns of the surface and a distance; the point, the normal and the motion are parameters.
     along_normal: System,
-    /// Unknowns of the surface and a turn; the point is a parameter.
-    around_axis: System,
+    /// Unknowns of the surface and the motion; the point is a parameter.
+    onto_point: System,
     ranges: Vec<Range>,
+    alignment: Alignment,
 }
 
 impl Deviation {
-    /// Of a surface.
+    /// Of a surface that lies anywhere on the way of this motion.
     ///
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
     /// If the surface does not have two unknowns more than constraints.
-    pub fn new<'g>(surface: &BoundSurface<'g>) -> Result<Deviation, TapeError> {
+    pub fn new<'g>(surface: &BoundSurface<'g>, alignment: Alignment) -> Result<Deviation, TapeError> {
         let bound = surface.surface();
         let graph = bound.position.0[0].graph();
         let vector = |names: [&str; 3]| Vector3(names.map(|name| graph.variable(name)));
         let (point, normal) = (vector(["point x", "point y", "point z"]), vector(["normal x", "normal y", "normal z"]));
-        let (distance, turn) = (graph.variable("distance"), graph.variable("turn"));
-        let [x, y, z] = bound.position.0;
-        let turned = Vector3([x * turn.cos() - y * turn.sin(), x * turn.sin() + y * turn.cos(), z]);
+        let (distance, by) = (graph.variable("distance"), graph.variable("motion"));
+        let moved = alignment.moved_by(bound.position, by);
         let residuals = |apart: Vector3<'g>| surface.constrained(apart.0);
         let unknowns = |last: Expr<'g>| [bound.unknowns.as_slice(), &[last]].concat();
         let reached = point + normal.map(|part| part * distance);
-        let parameters: Vec<Expr<'_>> = point.0.into_iter().chain(normal.0).chain([turn]).collect();
+        let parameters: Vec<Expr<'_>> = point.0.into_iter().chain(normal.0).chain([by]).collect();
         Ok(Deviation {
-            along_normal: System::new(&residuals(turned - reached), &unknowns(distance), &parameters)?,
-            around_axis: System::one_by_one(&residuals(turned - point), &unknowns(turn), &point.0)?,
+            along_normal: System::new(&residuals(moved - reached), &unknowns(distance), &parameters)?,
+            onto_point: System::one_by_one(&residuals(moved - point), &unknowns(by), &point.0)?,
             ranges: surface.ranges().to_vec(),
+            alignment,
         })
     }
 
@@ -61,8 +62,9 @@ impl Deviation {
     pub fn with_settings(&self, values: &[f64]) -> Deviation {
         Deviation {
             along_normal: self.along_normal.with_settings(values),
-            around_axis: self.around_axis.with_settings(values),
+            onto_point: self.onto_point.with_settings(values),
             ranges: self.ranges.clone(),
+            alignment: self.alignment,
         }
     }
 
@@ -71,21 +73,24 @@ impl Deviation {
         self.along_normal.translate();
     }
 
-    /// The turn about the z axis, radians, that brings the surface to a point. `near` is a point of the surface from which it is
-    /// looked for: one with the same z and distance from the axis, if there is one. `None` if the surface does not come
-    /// to the point within its ranges.
-    pub fn turn_to(&self, point: [f64; 3], near: &SurfacePoint) -> Option<f64> {
-        let angle = |[x, y, _]: [f64; 3]| y.atan2(x);
-        let apart = angle(point) - angle(near.position);
-        let start = apart - std::f64::consts::TAU * (apart / std::f64::consts::TAU).round();
-        self.last_unknown(&self.around_axis, A_TURN, &point, near, start)
+    /// The motion in which the place of the surface is unknown.
+    pub fn alignment(&self) -> Alignment {
+        self.alignment
     }
 
-    /// How far the surface, turned about the z axis, lies off a point of another one: along the point's normal, mm, positive
-    /// on the side to which it points, which is out of the body. `near` is as in [`Deviation::turn_to`]. `None` if the normal
-    /// does not meet the surface within its ranges.
-    pub fn along_normal(&self, from: &SurfacePoint, near: &SurfacePoint, turn: f64) -> Option<f64> {
-        let (start, parameters) = asked(from, near, turn);
+    /// The motion that brings the surface to a point. `near` is a point of the surface from which it is looked for: one that the motion
+    /// brings near to the point, such as one with the same z and distance from the axis. `None` if the surface does not come to the point
+    /// within its ranges.
+    pub fn motion_to(&self, point: [f64; 3], near: &SurfacePoint) -> Option<f64> {
+        let start = self.alignment.apart(near.position, point);
+        self.last_unknown(&self.onto_point, self.alignment.range(), &point, near, start)
+    }
+
+    /// How far the surface, moved by so much, lies off a point of another one: along the point's normal, mm, positive on the side to
+    /// which it points, which is out of the body. `near` is as in [`Deviation::motion_to`]. `None` if the normal does not meet the surface
+    /// within its ranges.
+    pub fn along_normal(&self, from: &SurfacePoint, near: &SurfacePoint, by: f64) -> Option<f64> {
+        let (start, parameters) = self.asked(from, near, by);
         self.last_unknown(&self.along_normal, FARTHEST, &parameters, near, start)
     }
 
@@ -94,13 +99,13 @@ impl Deviation {
     ///
     /// # Panics
     /// If there are not as many points of the one as of the other.
-    pub fn map(&self, from: &[SurfacePoint], near: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+    pub fn map(&self, from: &[SurfacePoint], near: &[SurfacePoint], by: f64) -> Vec<Option<f64>> {
         assert_eq!(from.len(), near.len(), "one start for each point");
         let tiles = from.par_chunks(TILE).zip(near.par_chunks(TILE));
-        tiles.flat_map_iter(|(from, near)| self.tile(from, near, turn)).collect()
+        tiles.flat_map_iter(|(from, near)| self.tile(from, near, by)).collect()
     }
 
-    fn tile(&self, from: &[SurfacePoint], near: &[SurfacePoint], turn: f64) -> Vec<Option<f64>> {
+    fn tile(&self, from: &[SurfacePoint], near: &[SurfacePoint], by: f64) -> Vec<Option<f64>> {
         let ranges = [&self.ranges[..], &[FARTHEST]].concat();
         let mut newton = LaneNewton::new(&self.along_normal, &ranges);
         let mut found = Vec::with_capacity(from.len());
@@ -109,7 +114,7 @@ impl Deviation {
             let active: Vec<bool> =
                 from.iter().zip(near).map(|(from, near)| is_solved(from) && is_solved(near)).collect();
             for lane in (0..active.len()).filter(|lane| active[*lane]) {
-                let (start, parameters) = asked(&from[lane], &near[lane], turn);
+                let (start, parameters) = self.asked(&from[lane], &near[lane], by);
                 newton.put(lane, near[lane].unknowns.iter().copied().chain([start]), &parameters);
             }
             newton.run(&active, true);
@@ -120,11 +125,19 @@ impl Deviation {
                     true if is_near && newton.outcome(lane) == Outcome::Solved => {
                         Some(newton.input(self.ranges.len())[lane])
                     }
-                    true => self.along_normal(&from[lane], &near[lane], turn),
+                    true => self.along_normal(&from[lane], &near[lane], by),
                 }
             }));
         }
         found
+    }
+
+    /// Where the distance along the normal of a point to the moved surface is looked for first, and the parameters of the system that says
+    /// so.
+    fn asked(&self, from: &SurfacePoint, near: &SurfacePoint, by: f64) -> (f64, [f64; 7]) {
+        let ([x, y, z], [nx, ny, nz]) = (self.alignment.moved(near.position, by), from.normal);
+        let [px, py, pz] = from.position;
+        ((x - px) * nx + (y - py) * ny + (z - pz) * nz, [px, py, pz, nx, ny, nz, by])
     }
 
     fn last_unknown(
@@ -140,16 +153,6 @@ impl Deviation {
         let solution = solve(system, &ranges, parameters, &start);
         (solution.outcome == Outcome::Solved).then(|| solution.unknowns[self.ranges.len()])
     }
-}
-
-/// Where the distance along the normal of a point to a surface, turned about z, is looked for first, and the parameters of the
-/// system that says so.
-fn asked(from: &SurfacePoint, near: &SurfacePoint, turn: f64) -> (f64, [f64; 7]) {
-    let (sine, cosine) = turn.sin_cos();
-    let ([x, y, z], [nx, ny, nz]) = (near.position, from.normal);
-    let [px, py, pz] = from.position;
-    let start = (x * cosine - y * sine - px) * nx + (x * sine + y * cosine - py) * ny + (z - pz) * nz;
-    (start, [px, py, pz, nx, ny, nz, turn])
 }
 
 /// What a map of deviations is like: the parabola in both directions of the grid that fits it best, each direction running from
@@ -208,8 +211,8 @@ mod tests {
             Surface::parametric([angle, height], Vector3([radius * angle.cos(), radius * angle.sin(), height]), false)
         };
         let ranges = vec![Range { low: -4.0, high: 4.0 }, Range { low: -50.0, high: 50.0 }];
-        let deviation =
-            Deviation::new(&BoundSurface::new(&cylinder(10.5), ranges, &[])).expect("nothing else is unknown");
+        let deviation = Deviation::new(&BoundSurface::new(&cylinder(10.5), ranges, &[]), Alignment::Turn)
+            .expect("nothing else is unknown");
         let point = |angle: f64, radius: f64| SurfacePoint {
             outcome: Outcome::Solved,
             unknowns: vec![angle, 7.0],
@@ -220,7 +223,7 @@ mod tests {
         for angle in [-3.0, -1.0, 0.2, 2.5] {
             let off = deviation.along_normal(&point(angle, 10.0), &point(angle + 0.1, 10.5), 0.0).expect("it is met");
             assert!((off - 0.5).abs() < 1e-13, "{off}");
-            assert_eq!(deviation.turn_to([20.0, 0.0, 7.0], &point(angle, 10.5)), None, "it is farther out");
+            assert_eq!(deviation.motion_to([20.0, 0.0, 7.0], &point(angle, 10.5)), None, "it is farther out");
         }
     }
 
@@ -231,7 +234,8 @@ mod tests {
         let (radius, height) = (graph.variable("radius"), graph.variable("height"));
         let plane = Surface::parametric([radius, height], Vector3([radius, 0.0 * radius, height]), false);
         let ranges = vec![Range { low: 1.0, high: 50.0 }, Range { low: -50.0, high: 50.0 }];
-        let deviation = Deviation::new(&BoundSurface::new(&plane, ranges, &[])).expect("nothing else is unknown");
+        let deviation =
+            Deviation::new(&BoundSurface::new(&plane, ranges, &[]), Alignment::Turn).expect("nothing else is unknown");
         let point = |turn: f64| SurfacePoint {
             outcome: Outcome::Solved,
             unknowns: vec![20.0, 3.0],
@@ -240,7 +244,7 @@ mod tests {
             residual: 0.0,
         };
         let wanted = point(0.3);
-        let turn = deviation.turn_to(wanted.position, &point(0.0)).expect("it reaches the point");
+        let turn = deviation.motion_to(wanted.position, &point(0.0)).expect("it reaches the point");
         assert!((turn - 0.3).abs() < 1e-14);
         let off = deviation.along_normal(&wanted, &point(0.0), turn).expect("it is met");
         assert!(off.abs() < 1e-12, "{off:e}");

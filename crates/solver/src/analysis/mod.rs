@@ -1,6 +1,7 @@
 //! What follows from a solved surface: geometry, sensitivities, deviations, and what cuts it.
 
 pub(crate) mod adjustment;
+pub(crate) mod alignment;
 pub(crate) mod cutting;
 pub(crate) mod deviation;
 pub(crate) mod extent;

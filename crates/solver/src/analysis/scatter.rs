@@ -38,6 +38,16 @@ impl Scatter {
         Some(Scatter { deviations: deviations.to_vec(), factor })
     }
 
+    /// Numbers that are correlated in the same way, with other standard deviations.
+    ///
+    /// # Panics
+    /// If there are not as many.
+    #[must_use]
+    pub fn with_deviations(&self, deviations: Vec<f64>) -> Scatter {
+        assert_eq!(deviations.len(), self.deviations.len(), "a standard deviation for each number");
+        Scatter { deviations, factor: self.factor.clone() }
+    }
+
     /// The standard deviation of what changes with the numbers by this gradient: √(G C Gᵀ).
     #[must_use]
     pub fn deviation(&self, gradient: &[f64]) -> f64 {

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Vector3;
 
+use crate::analysis::alignment::Alignment;
+
 /// How the spaces of a body follow each other. Places of a body are `[z, rho, angle]` about the z axis, or `[z, x, y]` along y.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Arrangement {
@@ -55,23 +57,22 @@ impl Arrangement {
         [z, rho]
     }
 
-    /// A point moved on along the spaces.
-    pub fn moved(self, [x, y, z]: [f64; 3], by: f64) -> [f64; 3] {
+    /// The motion that brings one space onto the next.
+    pub fn alignment(self) -> Alignment {
         match self {
-            Arrangement::Round => {
-                let (sin, cos) = by.sin_cos();
-                [cos * x - sin * y, sin * x + cos * y, z]
-            }
-            Arrangement::Straight { .. } => [x, y + by, z],
+            Arrangement::Round => Alignment::Turn,
+            Arrangement::Straight { .. } => Alignment::Shift,
         }
+    }
+
+    /// A point moved on along the spaces.
+    pub fn moved(self, point: [f64; 3], by: f64) -> [f64; 3] {
+        self.alignment().moved(point, by)
     }
 
     /// A direction moved on along the spaces.
     pub fn turned(self, direction: [f64; 3], by: f64) -> [f64; 3] {
-        match self {
-            Arrangement::Round => self.moved(direction, by),
-            Arrangement::Straight { .. } => direction,
-        }
+        self.alignment().turned(direction, by)
     }
 
     /// The angle that differs from one by whole turns and is the nearest to another.

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use flank_chain_dsl::Job;
-use flank_solver::{NearFoot, Outcome, SurfacePoint, mean_turn};
+use flank_solver::{NearFoot, Outcome, SurfacePoint};
 
 use crate::compare::deviation;
 use crate::compare::gauged::{Gauged, GaugedArea};
@@ -28,8 +28,8 @@ pub(super) struct Aim<'j, 'g> {
     /// Why points are missing.
     pub(super) missing: Vec<NotDone>,
     measured: Option<Gauged>,
-    /// About z, radians, by which the points lie nearer to the surface.
-    turn: f64,
+    /// By which the points lie nearer to the surface.
+    motion: f64,
 }
 
 /// A point with a place of the surface nearby.
@@ -57,7 +57,7 @@ impl<'j, 'g> Aim<'j, 'g> {
             let off = (0..3).map(|k| (position[k] - nominal.position[k]) * nominal.normal[k]).sum();
             Some(Aimed { position, near: NearFoot { unknowns: nominal.unknowns.clone(), distance: off } })
         };
-        let turn = mean_turn(&gauged.positions, &gauged.nominal).unwrap_or(0.0);
+        let motion = of.alignment().mean(&gauged.positions, &gauged.nominal).unwrap_or(0.0);
         let (all, name) = (gauged.nominal.len(), &of.surface.name);
         let unsolved = gauged.nominal.iter().filter(|point| point.outcome != Outcome::Solved).count();
         let left_out = gauged.positions.iter().filter(|position| position.is_none()).count() - unsolved.min(all);
@@ -73,7 +73,7 @@ impl<'j, 'g> Aim<'j, 'g> {
             points: gauged.nominal.iter().zip(&gauged.positions).map(aimed).collect(),
             missing: missing.map(|(_, kind, message)| NotDone::new(kind, name, message)).collect(),
             measured: Some(gauged),
-            turn,
+            motion,
         })
     }
 
@@ -100,15 +100,15 @@ impl<'j, 'g> Aim<'j, 'g> {
         let [profile, length] = placed.shares(counts);
         let sample = placed.sample(&profile, &length);
         let points = placed.solved(&sample)?;
-        let starts = Starts::beside(of.surface, (&Asked::of_sample(&sample), &points));
+        let starts = Starts::beside(of.surface, (&Asked::of_sample(&sample), &points), of.alignment());
         let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, counts), session);
         if let Some(lost) = lost {
             return Err(Failure::NotDone(vec![lost]));
         }
-        let deviation = flank_solver::Deviation::new(&solve::bound(of.job, of.surface))
+        let deviation = flank_solver::Deviation::new(&solve::bound(of.job, of.surface), of.alignment())
             .expect("a job without errors leaves nothing unbound");
         let middle = starts::middle(counts);
-        let turn = deviation.turn_to(points[middle].position, &near[middle]).unwrap_or(0.0);
+        let motion = deviation.motion_to(points[middle].position, &near[middle]).unwrap_or(0.0);
         let wished = |at: usize, point: &SurfacePoint| match &table {
             Some(table) => {
                 let wanted = table.positions[at]?;
@@ -135,22 +135,23 @@ impl<'j, 'g> Aim<'j, 'g> {
             points: aimed,
             missing: missing.into_iter().collect(),
             measured: None,
-            turn: -turn,
+            motion: -motion,
         })
     }
 
-    /// The turn that brings the points of all near to their surfaces, to begin with.
-    pub(super) fn first_turn(aims: &[Aim<'_, '_>]) -> f64 {
+    /// The motion that brings the points of all near to their surfaces, to begin with.
+    pub(super) fn first_motion(aims: &[Aim<'_, '_>]) -> f64 {
         let measured: Vec<&Gauged> = aims.iter().filter_map(|aim| aim.measured.as_ref()).collect();
         let positions: Vec<Option<[f64; 3]>> = measured.iter().flat_map(|of| of.positions.iter().copied()).collect();
         let nominal: Vec<SurfacePoint> = measured.iter().flat_map(|of| of.nominal.iter().cloned()).collect();
-        mean_turn(&positions, &nominal).unwrap_or(aims.first().map_or(0.0, |aim| aim.turn))
+        let mean = aims.first().and_then(|aim| aim.of.alignment().mean(&positions, &nominal));
+        mean.unwrap_or(aims.first().map_or(0.0, |aim| aim.motion))
     }
 
     /// # Errors
-    /// If a measured point, turned about z, does not belong to its place.
-    pub(super) fn check_places(&self, turn: f64) -> Result<(), Failure> {
-        self.measured.iter().try_for_each(|of| of.check_places(&self.of.surface.frame, turn))
+    /// If a measured point, moved by so much, does not belong to its place.
+    pub(super) fn check_places(&self, motion: f64) -> Result<(), Failure> {
+        self.measured.iter().try_for_each(|of| of.check_places(self.of, motion))
     }
 }
 

@@ -17,12 +17,14 @@ use crate::project::units;
 /// The text of the spec: the job with the values that were set by hand, then these.
 ///
 /// # Errors
-/// If the file cannot use the job's spec.
+/// If the file is one that was read, or cannot use the job's spec.
 pub(in crate::compare) fn text(
     selection: &JobSelection,
     (job, values): (&Job<'_>, &[(String, String)]),
     file: &Path,
+    origin: &Origin,
 ) -> Result<String, Failure> {
+    check_unread(file, origin)?;
     let spec = selection.file();
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if !folder.is_dir() {
@@ -83,14 +85,21 @@ pub(in crate::compare) fn value(dimension: Dimension, value: f64) -> String {
 /// # Errors
 /// If the file is one that was read, or cannot be written.
 pub(in crate::compare) fn write(file: &Path, text: &str, origin: &Origin) -> Result<String, Failure> {
-    let shown = shown_path(file);
-    if origin.holds(file) {
-        return Err(Failure::Input(format!(
-            "`{shown}` is what this command reads and would be written over: name another file with option `write`"
-        )));
-    }
+    check_unread(file, origin)?;
     write_atomically(file, |out| Ok(out.write_all(text.as_bytes())?))?;
-    Ok(shown)
+    Ok(shown_path(file))
+}
+
+/// # Errors
+/// If the file is one that was read.
+fn check_unread(file: &Path, origin: &Origin) -> Result<(), Failure> {
+    match origin.holds(file) {
+        false => Ok(()),
+        true => Err(Failure::Input(format!(
+            "`{}` is what this command reads and would be written over: name another file with option `write`",
+            shown_path(file)
+        ))),
+    }
 }
 
 /// The way from a folder to a file, as `use` has it.

@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::Parameter;
 use flank_solver::{
-    AdjustedSurfaces, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection, linear_rest,
+    AdjustedSurfaces, Alignment, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection, linear_rest,
     most_effective,
 };
 
@@ -12,7 +12,7 @@ use super::result::{
     AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
     RangeBound, SettingChange, SettingsChoice, SettingsDirection,
 };
-use super::words::{self, SHARE, Unknown, What};
+use super::words::{self, SHARE, Unknown, What, motion_name};
 use super::{corrected, keep};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
@@ -51,15 +51,15 @@ impl<'a, 'g> Fitting<'a, 'g> {
         let (free, choice) = if request.vary.is_empty() {
             let candidates: Vec<usize> = all.filter(|k| rms(&effects[*k]) >= CANDIDATE).collect();
             let mut own: Vec<Vec<f64>> = candidates.iter().map(|k| effects[*k].clone()).collect();
-            let (off, turns) = (&self.now.fit.residuals, self.turn_effects());
-            own.extend(turns.iter().cloned());
+            let (off, motions) = (&self.now.fit.residuals, self.motion_effects());
+            own.extend(motions.iter().cloned());
             let all_leave = linear_rest(off, &own, request.resolution);
             // a wish does not scatter
             let of_points = || scatter(all_leave, off.len(), own.len());
             let noise = request.noise.unwrap_or_else(|| if request.is_wish() { 0.0 } else { of_points() });
             own.truncate(candidates.len());
             let mut free: Vec<usize> =
-                most_effective(off, &own, &turns, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
+                most_effective(off, &own, &motions, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
             free.sort_unstable();
             let choice = SettingsChoice {
                 candidates: candidates.iter().map(|k| self.problem.settings[*k].name.clone()).collect(),
@@ -74,9 +74,10 @@ impl<'a, 'g> Fitting<'a, 'g> {
         let points = self.problem.count();
         if points < unknowns {
             return Err(Failure::Input(format!(
-                "{} do not tell {}, the turn about z among them: measure more points, or name fewer settings with option `vary`",
+                "{} do not tell {}, the {} among them: measure more points, or name fewer settings with option `vary`",
                 units::counted(points, "point"),
-                units::counted(unknowns, "unknown")
+                units::counted(unknowns, "unknown"),
+                motion_name(self.problem.alignment)
             )));
         }
         Ok((free, choice))
@@ -88,22 +89,22 @@ impl<'a, 'g> Fitting<'a, 'g> {
         unknowns.map(|(k, unknown)| self.problem.part(scaled(of.effect(k), unknown.scale))).collect()
     }
 
-    /// The same of each turn; nothing where it is held.
-    pub(super) fn turn_effects(&self) -> Vec<Vec<f64>> {
-        let turns = [&self.problem.turn].into_iter().chain(&self.problem.further).enumerate();
-        let effect = |(k, turn): (usize, &ScaledUnknown)| {
-            let scale = if turn.range.low < turn.range.high { turn.scale } else { 0.0 };
+    /// The same of each motion; nothing where it is held.
+    pub(super) fn motion_effects(&self) -> Vec<Vec<f64>> {
+        let motions = [&self.problem.motion].into_iter().chain(&self.problem.further).enumerate();
+        let effect = |(k, motion): (usize, &ScaledUnknown)| {
+            let scale = if motion.range.low < motion.range.high { motion.scale } else { 0.0 };
             self.problem.part(scaled(self.now.effect(self.problem.settings.len() + k), scale))
         };
-        turns.map(effect).collect()
+        motions.map(effect).collect()
     }
 
-    /// By how much the tooth that was measured is thicker than the nominal one, mm on the circle through the middle of the points.
-    fn thicker(&self, radius: f64) -> Option<f64> {
-        let further = self.problem.turns(self.now).get(1)?;
-        // turned so far the points come to the surface: they lay off it by the contrary
+    /// By how much the tooth that was measured is thicker than the nominal one, mm on the circle, or the line, through the middle of the points.
+    fn thicker(&self, arc: f64) -> Option<f64> {
+        let further = self.problem.motions(self.now).get(1)?;
+        // moved so far the points come to the surface: they lay off it by the contrary
         let off: f64 = self.now.effect(self.problem.settings.len() + 1).iter().sum();
-        Some(-radius * further * off.signum())
+        Some(-arc * further * off.signum())
     }
 
     /// The value of a setting as a spec has it.
@@ -121,16 +122,21 @@ impl<'a, 'g> Fitting<'a, 'g> {
         let main = identification.unwrap_or(correction);
         let unknowns = self.unknowns();
         let predicted = self.predicted(request, correction);
-        let turn = (!request.as_it_lies).then(|| self.problem.turns(self.now)[0]);
-        let radius = self.problem.turn.scale.recip() * problem::TURN;
+        let motion = (!request.as_it_lies).then(|| self.problem.motions(self.now)[0]);
+        let (turn, shift) = match self.problem.alignment {
+            Alignment::Turn => (motion, None),
+            Alignment::Shift => (None, motion),
+        };
+        let arc = self.problem.motion.scale.recip() * problem::MOTION;
         let is_wish = request.is_wish();
         FitResult {
             job: self.aims[0].of.job.name.clone(),
             spec: shown_path(request.jobs.file()),
             flanks: self.flanks(main, &predicted, is_wish),
             turn_deg: turn.map(f64::to_degrees),
-            turn_mm: turn.map(|turn| radius * turn),
-            thicker_mm: self.thicker(radius),
+            turn_mm: turn.map(|turn| arc * turn),
+            shift_mm: shift,
+            thicker_mm: self.thicker(arc),
             before_um: 1e3 * self.now.rms(),
             identification: identification.map(|of| self.adjusted(of, free)),
             correction: self.adjusted(correction, &self.problem.settable(free)),
@@ -200,11 +206,12 @@ impl<'a, 'g> Fitting<'a, 'g> {
     fn unknowns(&self) -> Vec<Unknown<'a, 'g>> {
         let settings = self.problem.settings.iter().zip(&self.problem.unknowns);
         let settings = settings.map(|(of, unknown)| Unknown { what: What::Setting(of), scale: unknown.scale });
-        let turn = Unknown { what: What::Turn, scale: self.problem.turn.scale };
+        let motion = Unknown { what: What::Motion(self.problem.alignment), scale: self.problem.motion.scale };
         let names = self.aims.iter().skip(1).map(|aim| aim.of.surface.name.as_str());
         let further = self.problem.further.iter().zip(names);
-        let further = further.map(|(of, name)| Unknown { what: What::Further(name), scale: of.scale });
-        settings.chain([turn]).chain(further).collect()
+        let further =
+            further.map(|(of, name)| Unknown { what: What::Further(self.problem.alignment, name), scale: of.scale });
+        settings.chain([motion]).chain(further).collect()
     }
 
     fn adjusted(&self, of: &AdjustedSurfaces, free: &[usize]) -> AdjustedSettings {

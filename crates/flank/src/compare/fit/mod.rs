@@ -79,7 +79,7 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
         problem.settable(&free).iter().map(|&k| fitting.new_value(k, &correction)).collect();
     let (corrected, files) = match &request.write {
         Some(file) if !values.is_empty() => {
-            let text = corrected::text(&request.jobs, (of.job, &values), file)?;
+            let text = corrected::text(&request.jobs, (of.job, &values), file, &origin)?;
             if request.dry { (Some(text), vec![]) } else { (None, vec![corrected::write(file, &text, &origin)?]) }
         }
         _ => (None, vec![]),
@@ -106,7 +106,7 @@ struct Found {
 impl Found {
     fn of(aims: &[Aim<'_, '_>], problem: &Problem<'_, '_>, request: &FitRequest) -> Result<Found, Failure> {
         let now = problem.as_it_is()?;
-        aims.iter().enumerate().try_for_each(|(k, aim)| aim.check_places(problem.turn_of(&now, k)))?;
+        aims.iter().enumerate().try_for_each(|(k, aim)| aim.check_places(problem.motion_of(&now, k)))?;
         let (free, choice) = Fitting { aims, problem, now: &now }.chosen(request)?;
         let (identification, correction) = match request.is_wish() {
             true => (None, problem.reached(&now, &free)?),

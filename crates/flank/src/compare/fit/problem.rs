@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 use flank_chain_dsl::{GeneratedSurface, Parameter};
 use flank_solver::{
-    AdjustableSurface, AdjustedSurfaces, BoundSurface, Foot, NearFoot, Range, ScaledUnknown, SettingsAdjustment,
-    Shapes, WantedPoints,
+    AdjustableSurface, AdjustedSurfaces, Alignment, BoundSurface, Foot, NearFoot, Range, ScaledUnknown,
+    SettingsAdjustment, Shapes, WantedPoints,
 };
 
 use super::aim::{Aim, Aimed};
@@ -19,8 +19,8 @@ use crate::solve;
 
 /// What is beyond an end by this share of a range stands on it: points are asked for at ends.
 const ON_THE_END: f64 = 1e-9;
-/// The turn's scale is what moves the points by so much, mm: as much as the scale of a length.
-pub(super) const TURN: f64 = 0.1;
+/// The motion's scale is what moves the points by so much, mm: as much as the scale of a length.
+pub(super) const MOTION: f64 = 0.1;
 
 /// Surfaces in open settings, with the points that have a foot on them.
 pub(super) struct Problem<'p, 'g> {
@@ -35,8 +35,10 @@ pub(super) struct Problem<'p, 'g> {
     /// Of each surface the places of its points in the grid.
     pub(super) places: Vec<Vec<usize>>,
     points: Vec<Vec<Aimed>>,
-    pub(super) turn: ScaledUnknown,
-    /// Of each surface behind the first by how much further it is turned, where its points lie as they like.
+    /// In which motion the place of the points is unknown.
+    pub(super) alignment: Alignment,
+    pub(super) motion: ScaledUnknown,
+    /// Of each surface behind the first by how much further it is moved, where its points lie as they like.
     pub(super) further: Vec<ScaledUnknown>,
     /// What corrected settings leave where it is.
     pub(super) keeps: Vec<Keep>,
@@ -59,13 +61,15 @@ impl<'p, 'g> Problem<'p, 'g> {
         let steps = super::settings::steps(&settings, &request.round)?;
         let surfaces: Vec<AdjustableSurface> = aims.iter().map(|aim| adjustable(aim.of, &settings)).collect();
         let (as_it_lies, resolution) = (request.as_it_lies, request.resolution);
-        let alone = |k: usize| Aim::first_turn(&aims[k..=k]);
+        let alone = |k: usize| Aim::first_motion(&aims[k..=k]);
         let start = match () {
             () if as_it_lies => 0.0,
             () if request.is_thickness_free => alone(0),
-            () => Aim::first_turn(aims),
+            () => Aim::first_motion(aims),
         };
         let further = |k: usize| if request.is_thickness_free && k > 0 { alone(k) - start } else { 0.0 };
+        // surfaces of one body
+        let alignment = aims.first().map(|aim| aim.of.alignment()).unwrap_or_default();
         let now: Vec<f64> = settings.iter().map(|of| of.value).collect();
         let (mut places, mut points) = (Vec::new(), Vec::new());
         let (mut squares, mut count) = (vec![0.0; settings.len()], 0.0);
@@ -73,7 +77,7 @@ impl<'p, 'g> Problem<'p, 'g> {
             let known: Vec<(usize, &Aimed)> =
                 aim.points.iter().enumerate().filter_map(|(at, point)| Some((at, point.as_ref()?))).collect();
             let positions: Vec<[f64; 3]> =
-                known.iter().map(|(_, point)| turned(point.position, start + further(k))).collect();
+                known.iter().map(|(_, point)| alignment.moved(point.position, start + further(k))).collect();
             let near: Vec<NearFoot> = known.iter().map(|(_, point)| point.near.clone()).collect();
             let feet = surface.at(&now).feet(&positions, &near);
             for foot in feet.iter().flatten() {
@@ -85,18 +89,23 @@ impl<'p, 'g> Problem<'p, 'g> {
             places.push(own);
             points.push(aimed);
         }
-        let radii: Vec<f64> = points.iter().flatten().map(|of| of.position[0].hypot(of.position[1])).collect();
-        if radii.is_empty() {
+        let arcs: Vec<f64> = points.iter().flatten().map(|of| alignment.arc(of.position)).collect();
+        if arcs.is_empty() {
             let name = aims.first().map_or("", |aim| &aim.of.surface.name);
             return Err(Failure::Unsolved(format!(
                 "no normal of `{name}` within its ranges goes through any of the points"
             )));
         }
-        let radius = radii.iter().sum::<f64>() / radii.len() as f64;
-        let range = if as_it_lies { Range { low: 0.0, high: 0.0 } } else { Range { low: -2.0 * TAU, high: 2.0 * TAU } };
-        let turn = ScaledUnknown { start, scale: TURN / radius.max(TURN), range };
+        let arc = arcs.iter().sum::<f64>() / arcs.len() as f64;
+        let most = match alignment {
+            _ if as_it_lies => 0.0,
+            Alignment::Turn => 2.0 * TAU,
+            Alignment::Shift => f64::INFINITY,
+        };
+        let range = Range { low: -most, high: most };
+        let motion = ScaledUnknown { start, scale: MOTION / arc.max(MOTION), range };
         let each = if request.is_thickness_free { 1..aims.len() } else { 0..0 };
-        let further = each.map(|k| ScaledUnknown { start: further(k), ..turn }).collect();
+        let further = each.map(|k| ScaledUnknown { start: further(k), ..motion }).collect();
         let moved = squares.iter().map(|sum: &f64| (sum / count).sqrt());
         let unknowns = settings.iter().zip(moved).map(|(of, moved)| unknown(of, moved)).collect();
         let ends = aims.iter().map(|aim| ends(aim.of.surface)).collect();
@@ -109,7 +118,8 @@ impl<'p, 'g> Problem<'p, 'g> {
             ends,
             places,
             points,
-            turn,
+            alignment,
+            motion,
             further,
             keeps,
             shapes,
@@ -147,24 +157,24 @@ impl<'p, 'g> Problem<'p, 'g> {
         (count, names)
     }
 
-    /// The settings as they are: only the turn is looked for.
+    /// The settings as they are: only the motion is looked for.
     ///
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn as_it_is(&self) -> Result<AdjustedSurfaces, Failure> {
-        let turns: Vec<f64> = [&self.turn].into_iter().chain(&self.further).map(|of| of.start).collect();
-        self.fitted((&self.points, &[]), &turns, (&[], &[]))
+        let motions: Vec<f64> = [&self.motion].into_iter().chain(&self.further).map(|of| of.start).collect();
+        self.fitted((&self.points, &[]), &motions, (&[], &[]))
     }
 
-    /// The turns of a fit: that of all points, then by how much further those of each surface behind the first are turned.
-    pub(super) fn turns<'a>(&self, of: &'a AdjustedSurfaces) -> &'a [f64] {
+    /// The motions of a fit: that of all points, then by how much further those of each surface behind the first are moved.
+    pub(super) fn motions<'a>(&self, of: &'a AdjustedSurfaces) -> &'a [f64] {
         &of.fit.values[self.settings.len()..]
     }
 
-    /// About z, radians, of the points of a surface.
-    pub(super) fn turn_of(&self, fit: &AdjustedSurfaces, surface: usize) -> f64 {
-        let turns = self.turns(fit);
-        turns[0] + turns.get(surface).filter(|_| surface > 0).copied().unwrap_or_default()
+    /// Of the points of a surface.
+    pub(super) fn motion_of(&self, fit: &AdjustedSurfaces, surface: usize) -> f64 {
+        let motions = self.motions(fit);
+        motions[0] + motions.get(surface).filter(|_| surface > 0).copied().unwrap_or_default()
     }
 
     /// With some settings free, from where the points lie nearest to the surface as it is.
@@ -172,7 +182,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn identified(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
-        self.fitted((&self.points, &[]), self.turns(now), (free, &[]))
+        self.fitted((&self.points, &[]), self.motions(now), (free, &[]))
     }
 
     /// The same for points that lie on the other side of the surface by a share of the way.
@@ -202,29 +212,29 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// # Errors
     /// If a point loses its foot.
     pub(super) fn reached(&self, now: &AdjustedSurfaces, free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
-        self.rounded(&self.points, self.turns(now), free)
+        self.rounded(&self.points, self.motions(now), free)
     }
 
     /// Settings that have a step are brought onto it one by one, and the others are fitted again.
-    fn rounded(&self, points: &[Vec<Aimed>], turns: &[f64], free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
+    fn rounded(&self, points: &[Vec<Aimed>], motions: &[f64], free: &[usize]) -> Result<AdjustedSurfaces, Failure> {
         let mut fixed = Vec::new();
-        let mut found = self.fitted((points, &self.keeps), turns, (free, &fixed))?;
+        let mut found = self.fitted((points, &self.keeps), motions, (free, &fixed))?;
         for &k in free {
             let Some(step) = self.steps[k] else { continue };
             let Range { low, high } = self.unknowns[k].range;
             let whole = (found.fit.values[k] / step).round();
             let inside = whole.max((low / step).ceil()).min((high / step).floor());
             fixed.push((k, inside * step));
-            found = self.fitted((points, &self.keeps), turns, (free, &fixed))?;
+            found = self.fitted((points, &self.keeps), motions, (free, &fixed))?;
         }
         Ok(found)
     }
 
-    /// From these turns, with settings free, some of which are fixed at values; all others stay as they are.
+    /// From these motions, with settings free, some of which are fixed at values; all others stay as they are.
     fn fitted(
         &self,
         (points, keeps): (&[Vec<Aimed>], &[Keep]),
-        turns: &[f64],
+        motions: &[f64],
         (free, fixed): (&[usize], &[(usize, f64)]),
     ) -> Result<AdjustedSurfaces, Failure> {
         let kept = keeps.iter().map(|keep| (&keep.surface, &keep.points)).map(wanted);
@@ -238,8 +248,14 @@ impl<'p, 'g> Problem<'p, 'g> {
             wanted: self.surfaces.iter().zip(points).map(wanted).collect(),
             kept: kept.collect(),
             settings: settings.collect(),
-            turn: ScaledUnknown { start: turns[0], ..self.turn },
-            further: self.further.iter().zip(&turns[1..]).map(|(of, at)| ScaledUnknown { start: *at, ..*of }).collect(),
+            alignment: self.alignment,
+            motion: ScaledUnknown { start: motions[0], ..self.motion },
+            further: self
+                .further
+                .iter()
+                .zip(&motions[1..])
+                .map(|(of, at)| ScaledUnknown { start: *at, ..*of })
+                .collect(),
             shapes: self.shapes.clone(),
             resolution: self.resolution,
             uses_weak: self.is_measured,
@@ -304,9 +320,4 @@ pub(super) fn adjustable<'g>(of: Named<'_, 'g>, settings: &[&Parameter<'g>]) -> 
     let Named { job, surface } = of;
     let bound = BoundSurface::new(&surface.surface, solve::followed(surface), &job.bindings_beside(&open));
     AdjustableSurface::new(&bound, &open).expect("a job without errors leaves nothing unbound")
-}
-
-fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
-    let (sine, cosine) = turn.sin_cos();
-    [x * cosine - y * sine, x * sine + y * cosine, z]
 }

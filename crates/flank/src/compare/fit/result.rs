@@ -17,10 +17,13 @@ pub struct FitResult {
     pub spec: String,
     /// The surfaces, each with the points that it shall go through.
     pub flanks: Vec<FittedFlank>,
-    /// By which the points are turned about z so that they lie nearest to the surfaces as they are; null where they are not turned.
+    /// By which the points are turned about z so that they lie nearest to the surfaces as they are; null where they are not turned, and of a
+    /// rack.
     pub turn_deg: Option<f64>,
     /// The same on the circle through the middle of the points.
     pub turn_mm: Option<f64>,
+    /// Of a rack, whose spaces lie beside each other, along y instead of the turn; null of all else.
+    pub shift_mm: Option<f64>,
     /// By how much the tooth that was measured is thicker than the nominal one on that circle, where its thickness does not count; null where
     /// it does, or one flank is fitted.
     pub thicker_mm: Option<f64>,
@@ -168,14 +171,14 @@ pub struct SettingsDirection {
     pub moves_um: f64,
     /// Whether the fit uses it: the points tell it.
     pub is_used: bool,
-    /// The settings, and the turn about z, that take part.
+    /// The settings, and the turn about z or the shift along y, that take part.
     pub changes: Vec<SettingChange>,
 }
 
 /// A change of one setting.
 #[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct SettingChange {
-    /// Of a setting; or `turn about z`.
+    /// Of a setting; or `turn about z`, `shift along y`.
     pub name: String,
     /// Of the change.
     pub unit: String,

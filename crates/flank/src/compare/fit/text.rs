@@ -29,8 +29,12 @@ impl fmt::Display for FitResult {
             let [deg, mm] = [deg, mm].map(|value| fixed(value, 6));
             writeln!(f, "  turn about z  {deg} deg, {mm} mm on the circle through the middle")?;
         }
+        if let Some(mm) = self.shift_mm {
+            writeln!(f, "  shift along y {} mm", fixed(mm, 6))?;
+        }
         if let Some(mm) = self.thicker_mm {
-            writeln!(f, "  thickness     {} mm more on that circle, which does not count", fixed(mm, 6))?;
+            let place = if self.shift_mm.is_some() { "" } else { " on that circle" };
+            writeln!(f, "  thickness     {} mm more{place}, which does not count", fixed(mm, 6))?;
         }
         writeln!(f, "  before        rms {} um", um(self.before_um))?;
         if let Some(found) = &self.identification {

@@ -161,7 +161,7 @@ impl Fitting<'_, '_> {
             .filter(|k| main.fit.values[*k] != self.problem.settings[*k].value)
             .map(|k| self.problem.part(self.now.effect(k)))
             .collect();
-        effects.extend(self.turn_effects());
+        effects.extend(self.motion_effects());
         let ways = [([false, true], "columns"), ([true, false], "rows"), ([true, true], "rows and columns")];
         let found = ways
             .into_iter()

@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{Dimension, Parameter};
 use flank_export::fixed;
-use flank_solver::{SingularDirection, separated};
+use flank_solver::{Alignment, SingularDirection, separated};
 
 use super::settings::change;
 use crate::project::units;
@@ -24,23 +24,28 @@ pub(super) struct Unknown<'p, 'g> {
 #[derive(Clone, Copy)]
 pub(super) enum What<'p, 'g> {
     Setting(&'p Parameter<'g>),
-    /// Of all points about z.
-    Turn,
+    /// Of all points.
+    Motion(Alignment),
     /// Of the points of this surface beyond that.
-    Further(&'p str),
+    Further(Alignment, &'p str),
 }
 
 impl Unknown<'_, '_> {
     pub(super) fn name(&self) -> String {
         match self.what {
             What::Setting(of) => of.name.clone(),
-            What::Turn => "turn about z".to_string(),
-            What::Further(name) => format!("further turn of {name}"),
+            What::Motion(of) => motion_name(of).to_string(),
+            What::Further(Alignment::Turn, name) => format!("further turn of {name}"),
+            What::Further(Alignment::Shift, name) => format!("further shift of {name}"),
         }
     }
 
     pub(super) fn dimension(&self) -> Dimension {
-        if let What::Setting(of) = self.what { of.dimension } else { Dimension::ANGLE }
+        match self.what {
+            What::Setting(of) => of.dimension,
+            What::Motion(Alignment::Turn) | What::Further(Alignment::Turn, _) => Dimension::ANGLE,
+            What::Motion(Alignment::Shift) | What::Further(Alignment::Shift, _) => Dimension::LENGTH,
+        }
     }
 
     fn quoted(&self) -> String {
@@ -50,8 +55,16 @@ impl Unknown<'_, '_> {
         }
     }
 
-    fn is_turn(&self) -> bool {
+    fn is_motion(&self) -> bool {
         !matches!(self.what, What::Setting(_))
+    }
+}
+
+/// What the motion is called in which the place of the points is unknown.
+pub(super) fn motion_name(of: Alignment) -> &'static str {
+    match of {
+        Alignment::Turn => "turn about z",
+        Alignment::Shift => "shift along y",
     }
 }
 
@@ -76,7 +89,7 @@ fn sentence(shares: &[f64], size: Option<f64>, unknowns: &[Unknown<'_, '_>]) -> 
     match parts[..] {
         [one] => format!("{} does not show: {} of it {little}", unknowns[one].quoted(), by(one)),
         [a, b] if size.is_none() => {
-            let (a, b) = if unknowns[a].is_turn() { (b, a) } else { (a, b) };
+            let (a, b) = if unknowns[a].is_motion() { (b, a) } else { (a, b) };
             let ratio = -shares[b] * unknowns[b].scale / (shares[a] * unknowns[a].scale);
             let [first, other] = [a, b].map(|k| unknowns[k].quoted());
             let one = if units::is_angle(unknowns[a].dimension()) { 1f64.to_radians() } else { 1.0 };

@@ -80,7 +80,7 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
     };
     verdict::judge(&mut result, (&members, &conditions), (&problem, &found), checked.as_ref());
     if let Some(file) = request.write.as_ref().filter(|_| !values.is_empty()) {
-        let text = corrected::text(&request.jobs, (job, &values), file)?;
+        let text = corrected::text(&request.jobs, (job, &values), file, &origin)?;
         match request.dry {
             true => result.corrected = Some(text),
             false => result.files.push(corrected::write(file, &text, &origin)?),

@@ -1,7 +1,7 @@
 //! The ease-off of a surface from itself when settings change.
 
 use flank_chain_dsl::Parameter;
-use flank_solver::{AdjustableSurface, BoundSurface, EaseOff, Foot, FootSearch, NearFoot, Outcome};
+use flank_solver::{AdjustableSurface, Alignment, BoundSurface, EaseOff, Foot, FootSearch, NearFoot, Outcome};
 
 use super::quantity::Quantity;
 use crate::compare::map::Named;
@@ -14,8 +14,8 @@ use crate::solve::starts;
 /// Numbers of an ease-off, in the order of [`numbers`].
 const NAMES: [&str; 6] =
     ["slope_profilewise", "slope_lengthwise", "crowning_profilewise", "crowning_lengthwise", "bias", "position"];
-/// A turn about z moves the middle along its normal by at least this share of the way.
-const TURNS: f64 = 1e-3;
+/// The motion in which the place is unknown moves the middle along its normal by at least this share of the way.
+const MOVES: f64 = 1e-3;
 /// Steps until the middle is met.
 const MOST_STEPS: usize = 20;
 /// It is met within this distance, mm: what points are solved to.
@@ -27,7 +27,8 @@ pub(super) struct Flank {
     pub(super) counts: [usize; 2],
     /// The points as they are.
     feet: Vec<Option<Foot>>,
-    is_turned: bool,
+    /// The motion that is done until both meet in the middle, if one is.
+    alignment: Option<Alignment>,
 }
 
 impl Flank {
@@ -36,7 +37,7 @@ impl Flank {
     pub(super) fn new<'g>(
         of: Named<'_, 'g>,
         settings: &[&Parameter<'g>],
-        (is_turned, session): (bool, Session<'_>),
+        (is_aligned, session): (bool, Session<'_>),
     ) -> Result<Flank, Failure> {
         let placed = Placed::new(of.job, of.surface, [0.0; 2], session)?;
         let counts = placed.counts();
@@ -54,19 +55,24 @@ impl Flank {
             let feet = is_solved.then(|| now.feet(&[point.position], &[near(&point.unknowns)]));
             feet?.pop()?
         });
-        let flank = Flank { feet: feet.collect(), surface, counts, is_turned };
+        let alignment = is_aligned.then(|| of.alignment());
+        let flank = Flank { feet: feet.collect(), surface, counts, alignment };
         flank.check_middle(&of.surface.name)?;
         Ok(flank)
     }
 
     fn check_middle(&self, name: &str) -> Result<(), Failure> {
-        let way_out = "the option `no_align` does without the turn that brings both to meet there";
+        let Some(alignment) = self.alignment else { return Ok(()) };
+        let (motion, moved) = match alignment {
+            Alignment::Turn => ("turn", "turned about z"),
+            Alignment::Shift => ("shift", "shifted along y"),
+        };
+        let way_out = format!("the option `no_align` does without the {motion} that brings both to meet there");
         let refused = |why: &str| Err(Failure::Unsolved(format!("`{name}` {why}; {way_out}")));
         match self.middle() {
-            _ if !self.is_turned => Ok(()),
             None => refused("has no point in the middle of its grid"),
-            Some(middle) if turning(middle).abs() < TURNS * radius(middle) => {
-                refused("does not move along its normal in the middle of its grid when it is turned about z")
+            Some(middle) if lever(alignment, middle).abs() < MOVES * alignment.arc(middle.position) => {
+                refused(&format!("does not move along its normal in the middle of its grid when it is {moved}"))
             }
             Some(_) => Ok(()),
         }
@@ -84,15 +90,16 @@ impl Flank {
     /// What scatters, each with its change by a unit of each setting; `None` if the points are too few for a parabola.
     pub(super) fn quantities(&self, settings: usize) -> Option<Vec<Quantity>> {
         let by_setting = (0..settings).map(|k| {
-            let turn = match self.middle() {
-                Some(middle) if self.is_turned => -middle.moved[k] / turning(middle),
-                _ => 0.0,
+            let by = match self.alignment.zip(self.middle()) {
+                Some((alignment, middle)) => -middle.moved[k] / lever(alignment, middle),
+                None => 0.0,
             };
-            let off = self.feet.iter().map(|foot| foot.as_ref().map(|foot| foot.moved[k] + turn * turning(foot)));
-            self.numbers(&off.collect::<Vec<_>>(), turn)
+            let aligned = |foot: &Foot| self.alignment.map_or(0.0, |alignment| by * lever(alignment, foot));
+            let off = self.feet.iter().map(|foot| foot.as_ref().map(|foot| foot.moved[k] + aligned(foot)));
+            self.numbers(&off.collect::<Vec<_>>(), by)
         });
         let by_setting = by_setting.collect::<Option<Vec<[f64; 6]>>>()?;
-        let count = if self.is_turned { NAMES.len() } else { NAMES.len() - 1 };
+        let count = self.count();
         let quantity = |(at, name): (usize, &&str)| {
             let gradient = by_setting.iter().map(|numbers| numbers[at]).collect();
             Quantity { name: (*name).to_string(), unit: "um", size: 1e-3, gradient }
@@ -104,56 +111,53 @@ impl Flank {
     pub(super) fn with(&self, values: &[f64]) -> Option<Vec<f64>> {
         let (positions, near): (Vec<[f64; 3]>, Vec<NearFoot>) = self.feet.iter().flatten().map(beside).unzip();
         let changed = self.surface.at(values);
-        let turn = if self.is_turned { self.met(&changed)? } else { 0.0 };
-        let turned: Vec<[f64; 3]> = positions.into_iter().map(|point| about_z(point, -turn)).collect();
-        let mut feet = changed.feet(&turned, &near).into_iter();
+        let (alignment, by) = match self.alignment {
+            Some(alignment) => (alignment, self.met(&changed, alignment)?),
+            None => (Alignment::default(), 0.0),
+        };
+        let moved: Vec<[f64; 3]> = positions.into_iter().map(|point| alignment.moved(point, -by)).collect();
+        let mut feet = changed.feet(&moved, &near).into_iter();
         // a point lies off the changed surface the other way than that lies off the point
         let off = self.feet.iter().map(|foot| match foot {
             Some(_) => feet.next().flatten().map(|foot| Some(-foot.distance)),
             None => Some(None),
         });
-        let numbers = self.numbers(&off.collect::<Option<Vec<_>>>()?, turn)?;
-        Some(numbers.iter().take(if self.is_turned { 6 } else { 5 }).map(|number| 1e3 * number).collect())
+        let numbers = self.numbers(&off.collect::<Option<Vec<_>>>()?, by)?;
+        Some(numbers.iter().take(self.count()).map(|number| 1e3 * number).collect())
     }
 
-    /// The turn of the changed surface that brings it through the middle.
-    fn met(&self, changed: &FootSearch) -> Option<f64> {
+    /// How many numbers there are: the position only of what is moved.
+    fn count(&self) -> usize {
+        if self.alignment.is_some() { NAMES.len() } else { NAMES.len() - 1 }
+    }
+
+    /// The motion of the changed surface that brings it through the middle.
+    fn met(&self, changed: &FootSearch, alignment: Alignment) -> Option<f64> {
         let (position, mut near) = beside(self.middle()?);
-        let mut turn = 0.0;
+        let mut by = 0.0;
         for _ in 0..MOST_STEPS {
-            let foot = changed.feet(&[about_z(position, -turn)], std::slice::from_ref(&near)).pop()??;
+            let foot = changed.feet(&[alignment.moved(position, -by)], std::slice::from_ref(&near)).pop()??;
             if foot.distance.abs() < MET {
-                return Some(turn);
+                return Some(by);
             }
-            turn += foot.distance / turning(&foot);
+            by += foot.distance / lever(alignment, &foot);
             near = NearFoot { unknowns: foot.unknowns, distance: 0.0 };
         }
         None
     }
 
-    /// Of deviations, mm, and the turn that they take.
-    fn numbers(&self, off: &[Option<f64>], turn: f64) -> Option<[f64; 6]> {
+    /// Of deviations, mm, and the motion that they take.
+    fn numbers(&self, off: &[Option<f64>], by: f64) -> Option<[f64; 6]> {
         let EaseOff { slopes, crownings, bias } = EaseOff::of_deviations(off, self.counts)?;
-        let way = self.middle().map_or(0.0, |middle| -turn * radius(middle));
+        let way = self.middle().zip(self.alignment).map_or(0.0, |(middle, of)| -by * of.arc(middle.position));
         Some([slopes[0], slopes[1], crownings[0], crownings[1], bias, way])
     }
 }
 
-/// How far a surface moves along its normal for a turn about z, mm.
-fn turning(foot: &Foot) -> f64 {
-    let ([x, y, _], [nx, ny, _]) = (foot.position, foot.normal);
-    x * ny - y * nx
-}
-
-fn radius(foot: &Foot) -> f64 {
-    foot.position[0].hypot(foot.position[1])
+fn lever(alignment: Alignment, foot: &Foot) -> f64 {
+    alignment.lever(foot.position, foot.normal)
 }
 
 fn beside(foot: &Foot) -> ([f64; 3], NearFoot) {
     (foot.position, NearFoot { unknowns: foot.unknowns.clone(), distance: 0.0 })
-}
-
-fn about_z([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
-    let (sine, cosine) = turn.sin_cos();
-    [x * cosine - y * sine, x * sine + y * cosine, z]
 }

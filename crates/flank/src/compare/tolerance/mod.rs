@@ -99,7 +99,7 @@ pub fn tolerance(request: &ToleranceRequest, monitor: &dyn Monitor) -> Result<To
     not_done.extend(results.iter().filter(|_| !request.scatter.is_empty()).filter_map(too_much));
     let remarks: Vec<Remark> =
         results.iter().filter_map(|of| not_linear(of, sweep?.solved)).chain(idle(&results, &causes, request)).collect();
-    let may = may_scatter(&quantities, &wanted, causes.len());
+    let may = may_scatter(&quantities, &wanted, &scatter);
     Ok(ToleranceResult {
         job: of.job.name.clone(),
         spec: shown_path(request.jobs.file()),
@@ -225,19 +225,26 @@ fn wanted(quantities: &[Quantity], request: &ToleranceRequest) -> Result<Vec<Opt
     Ok(all)
 }
 
-/// How far each cause may scatter so that all that is wanted is met, each of n with a share of 1/n in the variance.
-fn may_scatter(quantities: &[Quantity], wanted: &[Option<f64>], causes: usize) -> Vec<Option<f64>> {
-    let mut may = vec![None; causes];
-    for (of, wanted) in quantities.iter().zip(wanted).filter_map(|(of, wanted)| Some((of, (*wanted)?))) {
+/// How far each cause may scatter so that all that is wanted is met, correlated as they are: each of those that change a number changes it by
+/// itself by the same amount. Where several numbers are wanted the smallest counts, and all are made smaller together by what one still
+/// scatters too much, for of causes against each other less of one may be more.
+fn may_scatter(quantities: &[Quantity], wanted: &[Option<f64>], scatter: &Scatter) -> Vec<Option<f64>> {
+    let wanted: Vec<(&Quantity, f64)> =
+        quantities.iter().zip(wanted).filter_map(|(of, wanted)| Some((of, (*wanted)?))).collect();
+    let mut may = vec![None; quantities.first().map_or(0, |of| of.gradient.len())];
+    for (of, wanted) in &wanted {
         let most = of.gradient.iter().fold(0.0, |most: f64, by| most.max(by.abs()));
-        let takes_part = |by: &f64| by.abs() > NOTHING * most;
-        let count = of.gradient.iter().filter(|by| takes_part(by)).count() as f64;
-        for (may, by) in may.iter_mut().zip(&of.gradient).filter(|(_, by)| takes_part(by)) {
-            let own: f64 = wanted / count.sqrt() / by.abs();
+        let by_one = |by: &f64| if by.abs() > NOTHING * most { by.abs().recip() } else { 0.0 };
+        let by_one: Vec<f64> = of.gradient.iter().map(by_one).collect();
+        let all = scatter.with_deviations(by_one.clone()).deviation(&of.gradient);
+        for (may, one) in may.iter_mut().zip(&by_one).filter(|(_, one)| **one > 0.0) {
+            let own: f64 = wanted / all * one;
             *may = Some(may.map_or(own, |known: f64| known.min(own)));
         }
     }
-    may
+    let together = scatter.with_deviations(may.iter().map(|may| may.unwrap_or(0.0)).collect());
+    let too_much = wanted.iter().map(|(of, wanted)| together.deviation(&of.gradient) / wanted).fold(1.0, f64::max);
+    may.into_iter().map(|may| may.map(|may| may / too_much)).collect()
 }
 
 fn told(cause: &Cause, may: Option<f64>, job: &Job<'_>) -> ScatteringCause {

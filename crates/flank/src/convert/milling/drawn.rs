@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::{Job, Milling, MillingObstacle};
 use flank_draw::{MillingDrawing, PassChart, RidgeSection};
-use flank_export::{Axis, Field, Header, Outcome, Patch, Point, Values, fixed};
+use flank_export::{Axis, Field, Header, Layout, Outcome, Patch, Point, Values, fixed};
 use flank_solver::{Obstacle, ToolBody, lowest};
 use rayon::prelude::*;
 
@@ -135,6 +135,7 @@ fn patch(target: &Target<'_, '_>, found: &Found<'_, '_>, all: &[super::LeftAt], 
     Patch {
         name: target.name().to_string(),
         frame: target.frame().to_string(),
+        layout: Layout::Round,
         rows: Axis { label: rows, count: all.len() / COLUMNS },
         columns: Axis { label: columns, count: COLUMNS },
         unknowns: Vec::new(),

@@ -4,6 +4,7 @@ use faer::Mat;
 
 use super::shapes::Shapes;
 use super::{AdjustableSurface, Foot, NearFoot};
+use crate::analysis::alignment::Alignment;
 use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown};
 
 /// A search ends where no point moves by more, mm: a hundredth of what points are solved to, and far above rounding.
@@ -20,18 +21,20 @@ pub struct WantedPoints<'s> {
     pub near: Vec<NearFoot>,
 }
 
-/// Settings that bring surfaces to points, and turns of the points about the z axis.
+/// Settings that bring surfaces to points, and motions that lay the points onto their place.
 #[derive(Clone, Debug)]
 pub struct SettingsAdjustment<'s> {
     /// Surfaces of one body, all in the same settings.
     pub wanted: Vec<WantedPoints<'s>>,
-    /// Further surfaces of the body that are to go through these points whatever the others do; the points are turned with the body.
+    /// Further surfaces of the body that are to go through these points whatever the others do; the points move with the body.
     pub kept: Vec<WantedPoints<'s>>,
     /// The settings; of those that are held both ends of the range are the start.
     pub settings: Vec<ScaledUnknown>,
-    /// About z, radians, of all points.
-    pub turn: ScaledUnknown,
-    /// By how much further the points of each wanted surface behind the first are turned, where each lies as it likes.
+    /// In which motion the place of the points is unknown.
+    pub alignment: Alignment,
+    /// That of all points.
+    pub motion: ScaledUnknown,
+    /// By how much further the points of each wanted surface behind the first are moved, where each lies as it likes.
     pub further: Vec<ScaledUnknown>,
     /// The parts of the distances that are fitted; all of them where there is none.
     pub shapes: Option<Shapes>,
@@ -44,11 +47,12 @@ pub struct SettingsAdjustment<'s> {
 /// Surfaces that are as near to points as their settings bring them.
 #[derive(Clone, Debug)]
 pub struct AdjustedSurfaces {
-    /// Residuals are the distances of the points, mm, or their parts that are fitted; unknowns the settings, then the turn, then those of single
-    /// surfaces.
+    /// Residuals are the distances of the points, mm, or their parts that are fitted; unknowns the settings, then the motion, then those of
+    /// single surfaces.
     pub fit: LeastSquaresFit,
     /// Of each surface, for each point.
     pub feet: Vec<Vec<Foot>>,
+    alignment: Alignment,
 }
 
 impl AdjustedSurfaces {
@@ -68,19 +72,19 @@ impl AdjustedSurfaces {
     /// What the distances change by per unit of an unknown. One for each point.
     #[must_use]
     pub fn effect(&self, unknown: usize) -> Vec<f64> {
-        in_order(&self.feet).map(|(surface, foot)| slope((surface, foot), unknown)).collect()
+        in_order(&self.feet).map(|foot| slope(foot, unknown, self.alignment)).collect()
     }
 }
 
 impl SettingsAdjustment<'_> {
-    /// Settings and turn with the least sum of squared distances. `None` if a point has no foot with the settings of the start.
+    /// Settings and motion with the least sum of squared distances. `None` if a point has no foot with the settings of the start.
     ///
     /// # Panics
     /// If a surface has not as many settings.
     #[must_use]
     pub fn solve(&self) -> Option<AdjustedSurfaces> {
         let problem = LeastSquares {
-            unknowns: self.settings.iter().chain([&self.turn]).chain(&self.further).copied().collect(),
+            unknowns: self.settings.iter().chain([&self.motion]).chain(&self.further).copied().collect(),
             exact: self.kept.iter().map(|kept| kept.points.len()).sum(),
             resolution: self.resolution,
             uses_weak: self.uses_weak,
@@ -94,27 +98,28 @@ impl SettingsAdjustment<'_> {
             let feet = self.feet(values, &near)?;
             near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
             let (wanted, kept) = feet.split_at(self.wanted.len());
-            let told = linearized([wanted, kept], values.len(), self.shapes.as_ref());
+            let told = linearized([wanted, kept], (values.len(), self.alignment), self.shapes.as_ref());
             last = (values.to_vec(), feet);
             Some(told)
         })?;
         let (values, feet) = last;
         let mut feet = if values == fit.values { feet } else { self.feet(&fit.values, &near)? };
         feet.truncate(self.wanted.len());
-        Some(AdjustedSurfaces { fit, feet })
+        Some(AdjustedSurfaces { fit, feet, alignment: self.alignment })
     }
 
     fn surfaces(&self) -> impl Iterator<Item = &WantedPoints<'_>> {
         self.wanted.iter().chain(&self.kept)
     }
 
-    /// All feet with these settings and this turn; `None` if one is missing.
+    /// All feet with these settings and this motion; `None` if one is missing.
     fn feet(&self, values: &[f64], near: &[Vec<NearFoot>]) -> Option<Vec<Vec<Foot>>> {
-        let (settings, turns) = values.split_at(self.settings.len());
+        let (settings, motions) = values.split_at(self.settings.len());
         let of = |(surface, (wanted, near)): (usize, (&WantedPoints<'_>, &Vec<NearFoot>))| {
             let is_further = surface > 0 && surface < self.wanted.len();
-            let further = turns.get(surface).copied().filter(|_| is_further).unwrap_or_default();
-            let points: Vec<[f64; 3]> = wanted.points.iter().map(|point| turned(*point, turns[0] + further)).collect();
+            let further = motions.get(surface).copied().filter(|_| is_further).unwrap_or_default();
+            let points: Vec<[f64; 3]> =
+                wanted.points.iter().map(|point| self.alignment.moved(*point, motions[0] + further)).collect();
             wanted.surface.at(settings).feet(&points, near).into_iter().collect::<Option<Vec<Foot>>>()
         };
         self.surfaces().zip(near).enumerate().map(of).collect()
@@ -122,16 +127,20 @@ impl SettingsAdjustment<'_> {
 }
 
 /// Of points that are wanted, then of those that are kept, by so many unknowns.
-fn linearized([wanted, kept]: [&[Vec<Foot>]; 2], unknowns: usize, shapes: Option<&Shapes>) -> Linearized {
+fn linearized(
+    [wanted, kept]: [&[Vec<Foot>]; 2],
+    (unknowns, alignment): (usize, Alignment),
+    shapes: Option<&Shapes>,
+) -> Linearized {
     let part = |of: Vec<f64>| shapes.map_or_else(|| of.clone(), |shapes| shapes.part(&of));
     let all = |of: &dyn Fn((usize, &Foot)) -> f64| -> Vec<f64> {
         let own = part(in_order(wanted).map(of).collect());
-        // what is kept is turned with all
+        // what is kept moves with all
         own.into_iter().chain(in_order(kept).map(|(_, foot)| of((0, foot)))).collect()
     };
     let residuals = all(&|(_, foot)| foot.distance);
     let mut jacobian = Mat::zeros(residuals.len(), unknowns);
-    (0..unknowns).for_each(|k| jacobian.col_as_slice_mut(k).copy_from_slice(&all(&|foot| slope(foot, k))));
+    (0..unknowns).for_each(|k| jacobian.col_as_slice_mut(k).copy_from_slice(&all(&|foot| slope(foot, k, alignment))));
     Linearized { residuals, jacobian }
 }
 
@@ -140,17 +149,11 @@ fn in_order(feet: &[Vec<Foot>]) -> impl Iterator<Item = (usize, &Foot)> {
     feet.iter().enumerate().flat_map(|(surface, feet)| feet.iter().map(move |foot| (surface, foot)))
 }
 
-/// Along the normal at its foot a point recedes as the surface comes, and comes as it is turned; where the foot goes is square to that.
-fn slope((surface, foot): (usize, &Foot), unknown: usize) -> f64 {
-    let ([x, y, _], [nx, ny, _]) = (foot.position, foot.normal);
+/// Along the normal at its foot a point recedes as the surface comes, and comes as it is moved; where the foot goes is square to that.
+fn slope((surface, foot): (usize, &Foot), unknown: usize, alignment: Alignment) -> f64 {
     match unknown.checked_sub(foot.moved.len()) {
         None => -foot.moved[unknown],
-        Some(turn) if turn == 0 || turn == surface => x * ny - y * nx,
+        Some(motion) if motion == 0 || motion == surface => alignment.lever(foot.position, foot.normal),
         Some(_) => 0.0,
     }
-}
-
-fn turned([x, y, z]: [f64; 3], turn: f64) -> [f64; 3] {
-    let (sine, cosine) = turn.sin_cos();
-    [x * cosine - y * sine, x * sine + y * cosine, z]
 }

@@ -2,6 +2,7 @@
 
 use flank_expr::{Expr, TapeError};
 
+use crate::analysis::alignment::Alignment;
 use crate::analysis::deviation::Deviation;
 use crate::equations::solution::{CutBy, Outcome};
 use crate::surface::SurfaceProblem;
@@ -25,7 +26,7 @@ pub(super) fn mark_deeper<'g>(
     let Some(places) = Places::telling(points) else { return Ok(()) };
     let coordinates = places.values(by.surface().position.0, |x, y| (x * x + y * y).sqrt());
     let (near, _) = points_of_by(coordinates).points_alone().solve(&places.targets(points), counts);
-    let off = Deviation::new(by)?.map(points, &near, 0.0);
+    let off = Deviation::new(by, Alignment::default())?.map(points, &near, 0.0);
     for ((point, near), off) in points.iter_mut().zip(&near).zip(off) {
         let is_deeper = off.is_some_and(|off| off < -ON_EACH_OTHER) && turned_normal(near, point) > 0.0;
         if is_deeper {

@@ -1,6 +1,6 @@
 //! Settings and poses by least squares, from starts all over the ranges.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use faer::Mat;
 use flank_expr::{ScalarEvaluator, Tape};
@@ -101,7 +101,7 @@ impl Search {
             exact.extend(found.iter().filter(is_exact).map(|end| self.widened(end.clone(), motions, held)));
             exact.sort_by(|a, b| self.rank(a, motions.len()).total_cmp(&self.rank(b, motions.len())));
             if let Some(best) = exact.first().filter(|best| self.is_good(best, motions.len())) {
-                return best.clone();
+                return self.nearest(best.clone(), motions, held);
             }
             ends.extend(found);
             ends.sort_by(|a, b| a.cost.total_cmp(&b.cost));
@@ -116,6 +116,31 @@ impl Search {
         let mut nearest = ends.iter().take_while(|end| end.cost <= ends[0].cost * (1.0 + SAME_END));
         let nearest = nearest.find(|end| self.is_within(end)).unwrap_or(&ends[0]);
         exact.into_iter().next().unwrap_or_else(|| self.widened(nearest.clone(), motions, held))
+    }
+
+    /// Of what does the same with an angle half a turn further on, as a swivel and a tilt the other way do, the nearest to what is usual.
+    fn nearest(&self, mut best: State, motions: &[Vec<f64>], held: &[Option<f64>]) -> State {
+        let is_open = |k: &usize| held[*k].is_none() && self.settings[*k].kind == SettingKind::Angle;
+        let angles: Vec<usize> = (0..held.len()).filter(is_open).collect();
+        let spins = || (0..self.is_rotary.len()).filter(|k| self.is_rotary[*k]).map(Some);
+        let turns: Vec<(usize, Option<usize>)> =
+            angles.iter().flat_map(|k| [None].into_iter().chain(spins()).map(|spin| (*k, spin))).collect();
+        for _ in 0..angles.len() {
+            let turned = turns.par_iter().map(|(k, spin)| {
+                let mut state = best.clone();
+                state.settings[*k] += PI;
+                spin.iter().for_each(|spin| state.moving.iter_mut().for_each(|moving| moving[*spin] += PI));
+                self.unwound(self.descend(state, motions, held, EXACT), motions)
+            });
+            let turned: Vec<State> = turned.filter(|state| self.is_good(state, motions.len())).collect();
+            let rank = |state: &State| self.rank(state, motions.len());
+            let Some(other) = turned.into_iter().min_by(|a, b| rank(a).total_cmp(&rank(b))) else { break };
+            if rank(&other) >= rank(&best) * (1.0 - SAME_END) {
+                break;
+            }
+            best = other;
+        }
+        best
     }
 
     /// From a few poses to all.

@@ -246,11 +246,11 @@ impl CompiledNumbers {
                 let middle = starts::middle(from.counts());
                 let both = points.get(middle).zip(near.get(middle));
                 let both = both.filter(|(a, b)| [a, b].iter().all(|point| point.outcome == Outcome::Solved));
-                let turned = both.and_then(|(point, near)| {
-                    Some((compared.with_settings(settings).turn_to(point.position, near)?, point))
+                let moved = both.and_then(|(point, near)| {
+                    Some((compared.with_settings(settings).motion_to(point.position, near)?, point))
                 });
-                let Some((turn, point)) = turned else { return Ok(None) };
-                width_numbers(turn, point)
+                let Some((motion, point)) = moved else { return Ok(None) };
+                width_numbers((compared.alignment(), motion), point)
             }
             CompiledNumbers::Contact(of) => {
                 let (family, given) = &**of;

@@ -1,6 +1,6 @@
 //! The numbers of what is collected, from solved points.
 
-use flank_solver::{EaseOff, SurfacePoint};
+use flank_solver::{Alignment, EaseOff, SurfacePoint};
 
 use super::collected::{EASE_OFF, PLACE, STATUSES};
 use crate::compare::map::is_solved;
@@ -60,11 +60,11 @@ pub(super) fn ease_off_numbers(
 ) -> Numbers {
     let middle = starts::middle(asked.counts);
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
-    let Some(turn) = both.and_then(|(point, near)| compared.turn_to(point.position, near)) else {
+    let Some(motion) = both.and_then(|(point, near)| compared.motion_to(point.position, near)) else {
         return (vec![None; EASE_OFF.len()], Some("no_deviation".to_string()));
     };
     let off: Vec<Option<f64>> =
-        compared.map(points, near, turn).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
+        compared.map(points, near, motion).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
     let known: Vec<f64> = off.iter().flatten().copied().collect();
     let ease_off = EaseOff::of_deviations(&off, asked.counts);
     let square = known.iter().map(|um| um * um).sum::<f64>() / known.len() as f64;
@@ -78,16 +78,23 @@ pub(super) fn ease_off_numbers(
         (!known.is_empty()).then(|| square.sqrt()),
         end(f64::min),
         end(f64::max),
-        Some(turn.to_degrees()),
+        Some(turn_deg(compared.alignment(), motion)),
     ];
     let is_whole = known.len() == points.iter().filter(|point| is_solved(point)).count();
     (numbers, (!is_whole).then(|| "no_deviation".to_string()))
 }
 
-/// How far one surface is turned from another, of which `point` is the middle of the grid.
-pub(super) fn width_numbers(turn: f64, point: &SurfacePoint) -> Numbers {
-    let [x, y, _] = point.position;
-    (vec![Some(turn.to_degrees()), Some(x.hypot(y) * turn)], None)
+/// What is shifted is not turned.
+fn turn_deg(alignment: Alignment, motion: f64) -> f64 {
+    match alignment {
+        Alignment::Turn => motion.to_degrees(),
+        Alignment::Shift => 0.0,
+    }
+}
+
+/// How far one surface is moved from another, of which `point` is the middle of the grid.
+pub(super) fn width_numbers((alignment, motion): (Alignment, f64), point: &SurfacePoint) -> Numbers {
+    (vec![Some(turn_deg(alignment, motion)), Some(alignment.arc(point.position) * motion)], None)
 }
 
 /// The ends of both principal curvatures of points.

@@ -165,13 +165,14 @@ impl<'o, 'g> Opened<'o, 'g> {
 
     /// The points of a surface beside those of another one.
     fn beside(&self, surface: &GeneratedSurface<'g>, (asked, points): (&Asked, &[SurfacePoint])) -> Sampled {
-        let starts = Starts::beside(surface, (asked, points));
+        let starts = Starts::beside(surface, (asked, points), blank::alignment(self.job, surface));
         self.alone(surface, &starts.coordinates, (starts.targets, asked.counts)).begun(&self.nominal())
     }
 
     fn deviation(&self, surface: &GeneratedSurface<'g>) -> Deviation {
         let graph: &'g Graph = surface.surface.position.0[0].graph();
-        let compared = graph.with_settings(&self.settings, || Deviation::new(&self.bound(surface)));
+        let alignment = blank::alignment(self.job, surface);
+        let compared = graph.with_settings(&self.settings, || Deviation::new(&self.bound(surface), alignment));
         let compared = compared.expect("a job without errors leaves nothing unbound");
         compared.translate();
         compared

@@ -136,9 +136,10 @@ impl Case<'_, '_> {
     fn ease_off(&self, name: &str, nominal: &NominalPoints) -> Result<Numbers, Failure> {
         let NominalPoints { asked, points } = nominal;
         let of = self.named(name)?;
-        let starts = Starts::beside(of.surface, (asked, points));
+        let starts = Starts::beside(of.surface, (asked, points), of.alignment());
         let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, asked.counts), self.session);
-        let compared = Deviation::new(&bound(of.job, of.surface)).expect("a job without errors leaves nothing unbound");
+        let compared = Deviation::new(&bound(of.job, of.surface), of.alignment())
+            .expect("a job without errors leaves nothing unbound");
         let (numbers, why) = ease_off_numbers(&compared, nominal, &near);
         Ok((numbers, lost.map(|lost| kind_of(&lost)).or(why)))
     }
@@ -146,8 +147,9 @@ impl Case<'_, '_> {
     fn width(&self, [a, b]: [&str; 2]) -> Result<Numbers, Failure> {
         let found = deviation::measure([self.named(a)?, self.named(b)?], false, self.session)?;
         let found = found.result(Vec::new(), &self.origin);
-        let lost = found.turn_deg.is_none().then(|| found.not_done.first().map(kind_of).unwrap_or_default());
-        Ok((vec![found.turn_deg, found.turn_mm], lost))
+        let lost = found.moved_mm().is_none().then(|| found.not_done.first().map(kind_of).unwrap_or_default());
+        // what is shifted is not turned
+        Ok((vec![found.turn_deg.or(found.shift_mm.map(|_| 0.0)), found.moved_mm()], lost))
     }
 
     fn curvature(&self, name: &str) -> Result<Numbers, Failure> {
