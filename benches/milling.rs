@@ -3,7 +3,7 @@
 
 use divan::{Bencher, black_box};
 use flank_chain_dsl::{GeneratedSurface, Job, SampleGrid};
-use flank_export::{Dialect, Header, MachineAxis, PassProgram, ProgramPass, WordsOf, write_passes};
+use flank_export::{Dialect, Header, MachineAxis, PassProgram, ProgramPass, ProgramRapid, WordsOf, write_passes};
 use flank_expr::Graph;
 use flank_solver::{
     BoundSurface, Chart, Cutter, CutterPose, Lean, MillAxes, Obstacle, OutlinePiece, PoseField, PoseSeries, Range,
@@ -160,8 +160,12 @@ fn program_20000(bencher: Bencher) {
     let pass = |number: usize| {
         let [from, to] = [number, number + 1].map(|k| k * POSITIONS[1]);
         let places = &rows[from..to];
+        let rapid =
+            |row: &Vec<f64>, moves: &[usize]| ProgramRapid { row: row.clone(), tip: [0.0; 3], moves: moves.to_vec() };
         ProgramPass {
             name: format!("pass {}", number + 1),
+            approach: vec![rapid(&along[from], &[0, 1, 3, 4]), rapid(&along[from], &[2])],
+            away: vec![rapid(&along[to - 1], &[2])],
             rows: along[from..to].to_vec(),
             tips: places.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
             ways: vec![0.25; POSITIONS[1] - 1],
@@ -177,7 +181,10 @@ fn program_20000(bencher: Bencher) {
         },
         title: String::new(),
         axes: ["X", "Y", "Z", "A", "C"].into_iter().enumerate().map(axis).collect(),
-        retract: (2, 200.0),
+        home: (2, 200.0),
+        end: None,
+        is_upright: true,
+        zero: (String::new(), vec![0.0; 5]),
         passes: (0..rows.len() / POSITIONS[1]).map(pass).collect(),
         feed: 600.0,
         spindle: None,

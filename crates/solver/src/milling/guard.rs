@@ -139,7 +139,8 @@ mod tests {
     fn a_long_way_meets_the_surface_in_whichever_space_it_stands() {
         let (obstacle, body) = case();
         let turns = |count: u32| {
-            (0..count).map(|k| SpacePlace { turn: std::f64::consts::TAU * f64::from(k) / f64::from(count), shift: 0.0 })
+            (0..count)
+                .map(move |k| SpacePlace { turn: std::f64::consts::TAU * f64::from(k) / f64::from(count), shift: 0.0 })
         };
         let [alone, all] = [1, 4].map(|count| Guard::new(&obstacle, &body, turns(count).collect()));
         // from far outside into the plane that a quarter turn brings to y = 30
