@@ -241,7 +241,7 @@ fn a_law_of_other_teeth_is_told() {
     ];
     for (case, (content, message, way)) in cases.into_iter().enumerate() {
         let spec = written(&folder("edges_law"), &format!("law_{case}.chain"), &content);
-        let (found, code) = run("edges_law", &[&spec]);
+        let (found, code) = run("edges_law_out", &[&spec]);
         assert_eq!(code, 3, "{case}");
         let told = found["not_done"].to_string();
         assert!(told.contains(message) && told.contains(way), "{case}: {told}");

@@ -250,13 +250,19 @@ impl<'g> Context<'g> {
 
     /// The variables of an expression, each with its value or where it lies.
     pub(crate) fn ranges_of(&self, expr: Expr<'g>) -> Result<Vec<(Expr<'g>, Interval)>, Unranged> {
+        self.ranged(expr, true)
+    }
+
+    fn ranged(&self, expr: Expr<'g>, decides: bool) -> Result<Vec<(Expr<'g>, Interval)>, Unranged> {
         let known = |variable: Expr<'g>| {
             let index = variable.as_variable().map_or(0, VariableId::index);
             let role = self.roles[index];
             match self.ranges[index] {
                 _ if role.stands_still() && self.values[index].is_nan() => Err(Unranged::Unknown),
                 _ if role.stands_still() => {
-                    self.decide([index]);
+                    if decides {
+                        self.decide([index]);
+                    }
                     Ok((variable, Interval::point(self.values[index])))
                 }
                 // a range that depends on parameters without values
@@ -273,7 +279,16 @@ impl<'g> Context<'g> {
 
     /// Where an expression lies.
     pub(crate) fn enclosure(&self, expr: Expr<'g>) -> Result<Interval, Unranged> {
-        let ranges = self.ranges_of(expr)?;
+        self.enclosed(expr, true)
+    }
+
+    /// The same for a law, of which the model keeps the expression as well.
+    pub(crate) fn enclosure_kept(&self, expr: Expr<'g>) -> Result<Interval, Unranged> {
+        self.enclosed(expr, false)
+    }
+
+    fn enclosed(&self, expr: Expr<'g>, decides: bool) -> Result<Interval, Unranged> {
+        let ranges = self.ranged(expr, decides)?;
         let (variables, ranges): (Vec<_>, Vec<_>) = ranges.into_iter().unzip();
         let mut out = [Interval::WHOLE];
         if let Ok(tape) = Tape::new(&[expr], &variables) {
