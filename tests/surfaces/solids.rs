@@ -5,8 +5,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flank::{
-    Answer, Buffers, Disk, EvaluatorOptions, Failure, JobSelection, MeshFormat, NotDone, NotDoneKind, Project,
-    SolidNumbers, SolidPart, SolidRequest, SolidResult, Unwatched, solid,
+    Answer, Buffers, Disk, EvaluatorOptions, JobSelection, MeshFormat, NotDone, NotDoneKind, Project, SolidNumbers,
+    SolidPart, SolidRequest, SolidResult, Unwatched, solid,
 };
 use flank_tests::bodies::{euler_characteristic, triangles, volume};
 use flank_tests::repository;
@@ -22,26 +22,19 @@ struct Asked<'a> {
     deviation: f64,
     /// What of the text is replaced by what.
     changed: Option<(&'a str, &'a str)>,
-    /// The same of the rack's.
-    rack: Option<(&'a str, &'a str)>,
     ball: Option<f64>,
 }
 
 impl<'a> Asked<'a> {
     fn new(spec: &'a str, job: &'a str, set: &'a [(&'a str, &'a str)]) -> Asked<'a> {
-        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None, rack: None, ball: None }
+        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None, ball: None }
     }
 
     /// The result, and the triangles that were written of each solid, in a folder.
     fn built(&self, folder: &Path) -> SolidResult {
-        self.tried(folder).expect("a right spec")
-    }
-
-    fn tried(&self, folder: &Path) -> Result<SolidResult, Failure> {
         let path = repository(self.spec);
         let mut files = Buffers::over(Arc::new(Disk));
-        for (path, changed) in [(path.clone(), self.changed), (repository("specs/tools/rack.chain"), self.rack)] {
-            let Some((from, to)) = changed else { continue };
+        if let Some((from, to)) = self.changed {
             let text = std::fs::read_to_string(&path).expect("a spec");
             assert!(text.contains(from), "{from}");
             files = files.with(&path, text.replace(from, to));
@@ -60,8 +53,8 @@ impl<'a> Asked<'a> {
             evaluator: EvaluatorOptions::default(),
         };
         let mut results = Vec::new();
-        solid(&request, &Unwatched, &mut |result| results.push(result))?;
-        Ok(results.remove(0))
+        solid(&request, &Unwatched, &mut |result| results.push(result)).expect("a right spec");
+        results.remove(0)
     }
 
     fn only(&self) -> (SolidNumbers, Vec<[[f32; 3]; 3]>) {
@@ -541,14 +534,11 @@ fn how_far_spaces_go_through_the_bore_is_measured_where_they_go_farthest() {
 }
 
 /// The roundings of a rack whose land is negative cross each other in the middle of the space, where the trochoid's angle is nothing. The
-/// rack asks for none; without that, the ground behind the crossing is no ground, and left out of the space its neighbours end there.
+/// ground behind the crossing is no ground, and left out of the space its neighbours end there.
 #[test]
 fn spaces_that_cross_themselves_are_refused_and_end_where_fillets_meet() {
     let set = [("helix_angle", "0 deg"), ("r.tip_radius", "2 mm")];
-    let asked = Asked {
-        rack: Some(("require tip_half >= -1e-9 * module", "require module > 0 mm")),
-        ..Asked::new(BODIES, "helical", &set)
-    };
+    let asked = Asked::new(BODIES, "helical", &set);
     let spur = Spur { module: 3.0, teeth: 24.0, shift: 0.2, rounding: 2.0 / 3.0 };
     let (mut low, mut high) = (ALPHA, FRAC_PI_2);
     for _ in 0..60 {
@@ -575,9 +565,6 @@ fn spaces_that_cross_themselves_are_refused_and_end_where_fillets_meet() {
     // the space reaches no deeper than where they meet
     let section = PI * (tip * tip - 400.0) - 24.0 * (flanks + spur.fillet_to([ALPHA, low]));
     assert!((body.volume_mm3 / (20.0 * section) - 1.0).abs() < 1e-7, "{}", body.volume_mm3);
-    let folder = tempfile::tempdir().expect("a folder");
-    let tried = Asked::new(BODIES, "helical", &set).tried(folder.path());
-    assert!(matches!(tried, Err(Failure::Findings(_))), "the rack's teeth are pointed: {tried:?}");
 }
 
 /// Volume, centre and inertia about it of a closed mesh, of density one: of the tetrahedra over its triangles.

@@ -8,7 +8,8 @@ use support::{flank, folder, self_contained, text, written};
 /// What a run prints as JSON, with no picture, and its exit code.
 fn run(name: &str, arguments: &[&str]) -> (Value, i32) {
     let out = folder(name);
-    let all = [&["contact", "--no-picture", "--json", "--out", out.to_str().unwrap()][..], arguments].concat();
+    let all =
+        [&["contact", "--no-picture", "--json", "--out", out.to_str().expect("a plain path")][..], arguments].concat();
     let run = flank(&all);
     let printed = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{}", text(&run.stderr)));
     (printed, run.status.code().expect("a code"))
@@ -185,13 +186,14 @@ fn helicoids_are_as_a_search_finds_them() {
 fn the_middle_is_where_it_is_told_to_be() {
     for positions in ["7", "60"] {
         let found = solved("edges_middle", &["specs/pairs/helical_pair.chain", "--positions", positions]);
-        let ends: f64 = found["ends"].as_array().expect("ends").iter().map(|end| end["turn"].as_f64().unwrap()).sum();
+        let ends: f64 =
+            found["ends"].as_array().expect("ends").iter().map(|end| end["turn"].as_f64().expect("a number")).sum();
         let middle = &found["middle"];
-        assert!((middle["turn"].as_f64().unwrap() - 0.5 * ends).abs() < 1e-6, "{middle} {ends}");
+        assert!((middle["turn"].as_f64().expect("a number") - 0.5 * ends).abs() < 1e-6, "{middle} {ends}");
         let worm = solved("edges_middle", &["specs/pairs/worm_and_wheel.chain", "--positions", positions]);
         let middle = &worm["middle"];
         assert_eq!(middle["is_vertex"], true);
-        assert!((middle["turn"].as_f64().unwrap() - 90.0).abs() < 1e-6, "{middle}");
+        assert!((middle["turn"].as_f64().expect("a number") - 90.0).abs() < 1e-6, "{middle}");
     }
     let drive = solved("edges_middle", &["specs/pairs/cycloidal_drive.chain", "forward"]);
     assert_eq!((&drive["middle"]["is_vertex"], &drive["kind"]), (&Value::from(true), &Value::from("line")));
@@ -207,7 +209,7 @@ fn room_does_not_depend_on_positions() {
     let rooms = |arguments: &[&str]| -> Vec<f64> {
         let found = solved("edges_room", &[&["specs/pairs/spur_pair.chain", "drive_side"], arguments].concat());
         let rooms = found["clearances"].as_array().expect("room").iter();
-        rooms.map(|room| room["least_mm"].as_f64().unwrap()).collect()
+        rooms.map(|room| room["least_mm"].as_f64().expect("a number")).collect()
     };
     let known = rooms(&["--positions", "20"]);
     assert_eq!(known.len(), 2);

@@ -136,7 +136,7 @@ impl<'p> Track<'p> {
                 continue;
             }
             let edges = &watching.places[at].1.edges;
-            if let Some(found) = self.problem.from_place(place, (edges, is_vital), roll, known) {
+            if let Some(found) = self.problem.contact_beside(place, (edges, is_vital), roll, known) {
                 self.put(step, found);
             }
         }

@@ -331,7 +331,7 @@ impl ContactProblem {
 
     /// The contact beside a place, if it opens the pair as much as the place does and as what is known: looked for with the edges on which
     /// the place lies and with none; then, where it is vital, with each that there is.
-    pub(super) fn from_place(
+    pub(super) fn contact_beside(
         &self,
         start: &Passed,
         (edges, is_vital): (&[FlankEdge], bool),
