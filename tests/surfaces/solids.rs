@@ -504,18 +504,17 @@ fn balls_stay_clear_of_the_ground_between_flanks() {
     assert!(none.as_ref().is_none_or(|balls| balls.over_balls_mm > 0.0), "{none:?}");
 }
 
-/// Members that reach into each other are told as such, as `flank contact` does, and not as meshing.
+/// Bodies stand at the lag that all pairs of teeth leave, their edges too: of a worm of three starts the throat of the wheel and the tip of the worm
+/// carry over a part of the pitch, and where flanks alone were looked at they lay 0.012 mm in each other.
 #[test]
-fn pairs_that_reach_into_each_other_do_not_mesh() {
-    for (starts, reaches_in) in [("1", false), ("3", true)] {
+fn pairs_stand_where_flanks_and_edges_let_them() {
+    for starts in ["1", "3"] {
         let folder = tempfile::tempdir().expect("a folder");
         let set = [("starts", starts)];
         let pair = Asked::new("specs/bodies/worm_and_wheel_body.chain", "worm_and_wheel_body", &set);
         let result = Asked { deviation: 0.1, ..pair }.built(folder.path());
-        let told: Vec<NotDoneKind> = result.not_done().iter().map(|told| told.kind).collect();
-        assert_eq!(told, if reaches_in { vec![NotDoneKind::Penetration] } else { Vec::new() }, "{starts}");
-        assert_eq!(result.to_string().contains("stand as they mesh in the middle"), !reaches_in, "{result}");
-        assert_eq!(result.to_string().contains("and reach into each other"), reaches_in, "{result}");
+        assert!(result.is_complete(), "{starts}: {:?}", result.not_done());
+        assert!(result.to_string().contains("stand as they mesh in the middle"), "{result}");
     }
 }
 

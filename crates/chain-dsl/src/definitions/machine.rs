@@ -291,6 +291,7 @@ impl<'a> Flat<'a> {
             _ => String::new(),
         };
         let user = source.user();
+        let is_instance = matches!(source, Source::Instance { .. });
         let mut binder = Binder::new(source, overrides);
         let mut scope = Scope::new();
         context.moving = self.axes.list.iter().map(|axis| axis.name.node.clone()).collect();
@@ -325,13 +326,16 @@ impl<'a> Flat<'a> {
         }
         self.requirements.iter().for_each(|required| requirement::check(context, required, &scope, user));
         let lost_laws = self.repeated_laws + self.build_laws(context, &scope, &mut axes);
-        let following = axes.iter().map(|axis| Following {
-            name: axis.name.node.clone(),
-            variable: axis.variable,
-            law: axis.law.as_ref().and_then(|(law, ..)| *law),
-            place: axis.law.as_ref().map_or(axis.name.span, |(.., place)| *place),
-        });
-        report_circles(context, &following.collect::<Vec<_>>());
+        // the axes of an instance may follow those of others, too: its job looks
+        if !is_instance {
+            let following = axes.iter().map(|axis| Following {
+                name: axis.name.node.clone(),
+                variable: axis.variable,
+                law: axis.law.as_ref().and_then(|(law, ..)| *law),
+                place: axis.law.as_ref().map_or(axis.name.span, |(.., place)| *place),
+            });
+            report_circles(context, &following.collect::<Vec<_>>());
+        }
         nc_word::settle(context, &self.words, &scope, &mut axes);
         let (frames, lacks_transforms) = self.build_frames(context, machine, &scope);
         let linkages = if lacks_transforms {

@@ -224,7 +224,7 @@ impl<'g> Builder<'_, 'g> {
             for axis in machine.axes.iter().filter(|axis| axis.law != axis.variable) {
                 let value = match context.constant_kept(axis.law) {
                     Constant::Known(value) => value,
-                    Constant::Moves(_) if context.enclosure_kept(axis.law).is_ok_and(Interval::is_empty) => f64::NAN,
+                    Constant::Moves(_) if context.is_nowhere(axis.law) => f64::NAN,
                     Constant::Moves(_) | Constant::Unknown => continue,
                 };
                 if !value.is_finite() {

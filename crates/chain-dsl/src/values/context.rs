@@ -282,9 +282,9 @@ impl<'g> Context<'g> {
         self.enclosed(expr, true)
     }
 
-    /// The same for a law, of which the model keeps the expression as well.
-    pub(crate) fn enclosure_kept(&self, expr: Expr<'g>) -> Result<Interval, Unranged> {
-        self.enclosed(expr, false)
+    /// Whether an expression, which the model keeps, has no value anywhere.
+    pub(crate) fn is_nowhere(&self, expr: Expr<'g>) -> bool {
+        self.enclosed(expr, false).is_ok_and(Interval::is_empty)
     }
 
     fn enclosed(&self, expr: Expr<'g>, decides: bool) -> Result<Interval, Unranged> {
