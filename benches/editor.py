@@ -72,6 +72,8 @@ def places(text):
 
 
 def main():
+    # an answer is not to wait for the thread that reads another one
+    sys.setswitchinterval(1e-4)
     program = sys.argv[1] if len(sys.argv) > 1 else "target/release/flank"
     specs = sorted(pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else "specs").resolve().rglob("*.chain"))
     starts = []

@@ -117,8 +117,12 @@ fn the_page_follows_each_save_and_keeps_the_last_good_picture() {
     assert_eq!((&first["job"], &first["error"], &first["picture"]), (&"pinion_19x62".into(), &Value::Null, &1.into()));
     let (status, shell) = served.own("");
     assert!(status.contains("200") && shell.contains("EventSource"), "{status}");
-    let (_, page) = served.own("page/pinion_19x62?1");
-    assert!(page.contains("cradle_generator"), "{} bytes", page.len());
+    let (status, waiting) = served.own("page");
+    assert!(status.contains("200") && waiting.contains("window.begin"), "{status}");
+    let (_, data) = served.own("data/pinion_19x62?1");
+    assert!(data.contains("cradle_generator"), "{} bytes", data.len());
+    let (_, functions) = served.own("functions/pinion_19x62?1");
+    assert!(functions.contains("export function"), "{} bytes", functions.len());
 
     let saved = Instant::now();
     std::fs::write(&spec, before.replace("m.roll = roll", "m.rolle = roll")).expect("the spec");
@@ -127,14 +131,14 @@ fn the_page_follows_each_save_and_keeps_the_last_good_picture() {
     let error = wrong["error"].as_str().expect("an error");
     assert!(error.contains("pinion_19x62.chain:25:") && error.contains("E0201"), "{error}");
     assert_eq!(wrong["picture"], 1);
-    assert_eq!(served.own("page/pinion_19x62").1, page);
+    assert_eq!(served.own("data/pinion_19x62").1, data);
 
     let saved = Instant::now();
     std::fs::write(&spec, before.replace("angle in -20 deg", "angle in -21 deg")).expect("the spec");
     let mended = events.next();
     eprintln!("new data are there {} ms after the save", saved.elapsed().as_millis());
     assert_eq!((&mended["error"], &mended["picture"]), (&Value::Null, &2.into()));
-    assert_ne!(served.own("page/pinion_19x62").1, page);
+    assert_ne!(served.own("data/pinion_19x62").1, data);
 
     // what it uses, too
     let tool = spec.with_file_name("../tools/face_mill.chain");
@@ -160,8 +164,8 @@ fn nobody_else_reads_the_page() {
         (served.path.as_str(), &format!("{own}Host: evil.example\r\n"), "400"),
         ("/", own.as_str(), "404"),
         ("/0123456789abcdef0123456789abcdef/", own.as_str(), "404"),
-        (&format!("{}page/../../etc/passwd", served.path), own.as_str(), "404"),
-        (&format!("{}page/nothing", served.path), own.as_str(), "404"),
+        (&format!("{}data/../../etc/passwd", served.path), own.as_str(), "404"),
+        (&format!("{}data/nothing", served.path), own.as_str(), "404"),
     ] {
         let (found, _) = served.get(path, head);
         assert!(found.contains(status), "{path} {head}: {found}");

@@ -9,8 +9,8 @@ mod report;
 
 pub use page::{
     PageAxis, PageBody, PageColumn, PageContact, PageCut, PageFace, PageFrame, PageJoint, PageMachine, PageMember,
-    PageMilling, PageMotion, PageNumber, PageParameter, PageSurface, PageTool, PageTouch, Revolution, Scene, ToolForm,
-    write_page,
+    PageMilling, PageMotion, PageNumber, PageParameter, PageParts, PageSurface, PageTool, PageTouch, Revolution, Scene,
+    ToolForm, write_page, write_waiting_page,
 };
 pub use picture::{
     ContactDrawing, ContactMark, ContactPicture, DrawnContact, DrawnFlank, DrawnFrame, ErrorCurves, GearDrawing,

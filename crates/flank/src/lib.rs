@@ -116,7 +116,7 @@ pub use language::errors::{ErrorCode, Explanation, error_codes, error_page};
 pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
-pub use page::{page_texts, view};
+pub use page::{PageParts, page_parts, view, waiting_page};
 pub use project::answer::{Answer, Timed, Timing};
 pub use project::choices::{
     BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,

@@ -74,7 +74,7 @@ try {
     await lens.first().click();
     let shown;
     for (const end = Date.now() + 20_000; Date.now() < end && !shown; await page.waitForTimeout(100)) {
-        for (const frame of page.frames().filter((frame) => frame.url().includes("/page/"))) {
+        for (const frame of page.frames().filter((frame) => frame.url().endsWith("/page"))) {
             if (await frame.evaluate(() => document.body?.dataset.ready === "true").catch(() => false)) shown = frame;
         }
     }

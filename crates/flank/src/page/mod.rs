@@ -12,7 +12,8 @@ mod thin;
 mod tools;
 
 use flank_chain_dsl::{Job, RangedVariable};
-use flank_draw::{PageBody, PageMotion, Scene, write_page};
+pub use flank_draw::PageParts;
+use flank_draw::{PageBody, PageMotion, Scene, write_waiting_page};
 use flank_export::{Dataset, Field, Patch, Tally, Values};
 use flank_expr::Graph;
 
@@ -64,25 +65,34 @@ pub fn view(request: &ViewRequest, monitor: &dyn Monitor, each: &mut dyn FnMut(V
     pages((&request.jobs, request.evaluator), monitor, put, each)
 }
 
-/// The same pages as texts, which are given to `take` by the name of their job before its result is.
+/// What the same pages have of their jobs alone, which is given to `take` by the name of the job before its result is:
+/// for [`waiting_page`].
 ///
 /// # Errors
 /// What is wrong with the spec, that no job asks for points, that there are too many to keep.
-pub fn page_texts(
+pub fn page_parts(
     jobs: &JobSelection,
     evaluator: EvaluatorOptions,
     monitor: &dyn Monitor,
-    take: &mut dyn FnMut(&str, String),
+    take: &mut dyn FnMut(&str, PageParts),
     each: &mut dyn FnMut(ViewResult),
 ) -> Result<(), Failure> {
     let put = |name: &str, _: &Origin, dataset: &Dataset, scene: &Scene| {
-        let mut text = Vec::new();
-        write_page(dataset, scene, &mut text).map_err(|error| error.to_string())?;
-        let bytes = text.len() as u64;
-        take(name, String::from_utf8(text).map_err(|error| error.to_string())?);
+        let parts = PageParts::of_scene(dataset, scene).map_err(|error| error.to_string())?;
+        let bytes = (parts.data.len() + parts.functions.len()) as u64;
+        take(name, parts);
         Ok(Written { files: Vec::new(), bytes })
     };
     pages((jobs, evaluator), monitor, put, each)
+}
+
+/// A page of HTML that waits for its job: the function `begin` of its window shows one, from the addresses of the two
+/// parts that [`page_parts`] gives.
+#[must_use]
+pub fn waiting_page() -> String {
+    let mut text = Vec::new();
+    write_waiting_page(&mut text).expect("a vector takes all");
+    String::from_utf8(text).expect("the parts of the page are texts")
 }
 
 fn pages(

@@ -6,6 +6,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
+use flank::waiting_page;
+
 use super::pages::Pages;
 
 const SHELL: &str = include_str!("shell.html");
@@ -55,10 +57,21 @@ fn answer(stream: &TcpStream, secret: &str, pages: &Pages) -> io::Result<()> {
     match inside {
         "/" => whole(stream, "200 OK", "text/html; charset=utf-8", SHELL),
         "/events" => events(stream, pages),
-        _ => match inside.strip_prefix("/page/").and_then(|job| pages.text(job)) {
-            Some(text) => whole(stream, "200 OK", "text/html; charset=utf-8", &text),
+        "/page" => whole(stream, "200 OK", "text/html; charset=utf-8", &waiting_page()),
+        _ => match part(inside, pages) {
+            Some((kind, text)) => whole(stream, "200 OK", kind, &text),
             None => plain(stream, "404 Not Found", "there is nothing here\n"),
         },
+    }
+}
+
+/// What a page has of its job alone, and what kind of text it is.
+fn part(inside: &str, pages: &Pages) -> Option<(&'static str, String)> {
+    let (part, job) = inside.strip_prefix('/')?.split_once('/')?;
+    match part {
+        "data" => Some(("application/json", pages.parts(job)?.data.clone())),
+        "functions" => Some(("text/javascript; charset=utf-8", pages.parts(job)?.functions.clone())),
+        _ => None,
     }
 }
 

@@ -5,7 +5,7 @@ use std::io;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use flank::{EvaluatorOptions, Failure, JobSelection, Monitor, Remark, RemarkKind, ViewResult, page_texts};
+use flank::{EvaluatorOptions, Failure, JobSelection, Monitor, PageParts, Remark, RemarkKind, ViewResult, page_parts};
 use serde::Serialize;
 
 use crate::Spelling;
@@ -43,7 +43,7 @@ pub(super) struct Told {
 struct State {
     wish: Option<Wish>,
     told: Told,
-    texts: BTreeMap<String, Arc<String>>,
+    parts: BTreeMap<String, Arc<PageParts>>,
 }
 
 /// Pages by job, and what is to become of them.
@@ -76,9 +76,9 @@ impl Pages {
         self.changed.notify_all();
     }
 
-    /// The page of a job.
-    pub(super) fn text(&self, job: &str) -> Option<Arc<String>> {
-        self.state().texts.get(job).cloned()
+    /// What the page of a job has of it alone.
+    pub(super) fn parts(&self, job: &str) -> Option<Arc<PageParts>> {
+        self.state().parts.get(job).cloned()
     }
 
     /// What is told after a number, once there is something, or nothing for a while.
@@ -103,16 +103,16 @@ impl Pages {
     }
 
     fn make(&self, wish: &Wish) {
-        let mut texts = BTreeMap::new();
+        let mut parts = BTreeMap::new();
         let mut jobs = Vec::new();
         let newer = Newer { pages: self, idle: Mutex::default() };
         let mut without = Vec::new();
-        let made = page_texts(
+        let made = page_parts(
             &wish.selection,
             self.evaluator,
             &newer,
-            &mut |job, text| {
-                texts.insert(job.to_string(), Arc::new(text));
+            &mut |job, of| {
+                parts.insert(job.to_string(), Arc::new(of));
                 jobs.push(job.to_string());
             },
             &mut |result| without.extend(result.bytes.is_none().then(|| (result.job.clone(), reasons(&result)))),
@@ -127,20 +127,20 @@ impl Pages {
         let error = match made {
             Err(Failure::Cancelled) => return,
             Err(failure) => Some(in_words(&failure)),
-            Ok(()) if texts.is_empty() => unshown.values().next().cloned(),
+            Ok(()) if parts.is_empty() => unshown.values().next().cloned(),
             Ok(()) => None,
         };
         let mut state = self.state();
         state.told.number += 1;
         state.told.spec = flank::shown_path(wish.selection.file());
         state.told.error = error.map(|error| (self.spelled)(&error));
-        if !texts.is_empty() {
+        if !parts.is_empty() {
             state.told.picture += 1;
             state.told.asked = wish.job.clone();
             state.told.job = wish.job.clone().or_else(|| jobs.first().cloned());
             state.told.jobs = jobs;
             state.told.unshown = unshown;
-            state.texts = texts;
+            state.parts = parts;
         }
         drop(state);
         self.changed.notify_all();

@@ -11,7 +11,7 @@ import { withUnit } from "./numbers.js";
 import { element, pointRows, table } from "./panel.js";
 import { Pair } from "./pair.js";
 import { Settings } from "./settings.js";
-import { Stage } from "./stage.js";
+import { newRenderer, Stage } from "./stage.js";
 import { WorkSurface } from "./surface.js";
 
 const LINE = "#e6007e";
@@ -21,7 +21,7 @@ const MOST_FRAMES = 6;
 const NOWHERE = 1e9;
 
 class Page {
-    constructor(data, functions) {
+    constructor(data, functions, renderer) {
         this.data = data;
         this.functions = functions;
         this.settings = new Settings(data.parameters, functions[data.definitions]);
@@ -39,7 +39,7 @@ class Page {
         this.meshes = this.surfaces.map(
             (surface, k) => new WorkMesh(surface, data.colours[k % data.colours.length], this.shared),
         );
-        this.stage = new Stage(byId("canvas"), byId("labels"));
+        this.stage = new Stage(byId("canvas"), byId("labels"), renderer);
         this.quantity = "";
         this.selected = null;
         buildHeader(this);
@@ -301,9 +301,9 @@ class Page {
 }
 
 /** Called at the end of the page with the emitted functions. */
-function start(functions) {
+export function start(functions, renderer = newRenderer(byId("canvas"))) {
     const data = JSON.parse(byId("data").textContent);
-    const page = new Page(data, functions);
+    const page = new Page(data, functions, renderer);
     // for the console, and for tests
     window.flank = page;
     document.body.dataset.ready = "true";

@@ -11,13 +11,18 @@ const LETTER = 7.6;
 /** Frames nearer to each other, in pixels, have one label. */
 const SAME_PLACE = 10;
 
+export function newRenderer(canvas) {
+    const renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
+    // a look at each shader waits for the graphics processor
+    renderer.debug.checkShaderErrors = false;
+    return renderer;
+}
+
 export class Stage {
-    constructor(canvas, layer) {
+    constructor(canvas, layer, renderer) {
         this.canvas = canvas;
         this.layer = layer;
-        this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
-        // a look at each shader waits for the graphics processor
-        this.renderer.debug.checkShaderErrors = false;
+        this.renderer = renderer;
         this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
         this.scene = new THREE.Scene();
         this.camera = new THREE.PerspectiveCamera(24, 1, 1, 1e5);
