@@ -34,13 +34,9 @@ const HEAD_START: Duration = Duration::from_millis(40);
 const PICTURE_SILENCE: Duration = Duration::from_millis(300);
 /// Bytes of stack of a thread that compiles: as many as the main thread of a program has.
 const STACK: usize = 16 << 20;
-/// Threads that answer.
+/// Threads that answer, and those that compile what was changed: one spec after the other, and beside it the one that is typed in.
 const ANSWERING: usize = 2;
-/// Specs that are compiled at a time: one after the other, and beside it the one that is typed in.
 const COMPILING: usize = 2;
-/// How far the thread that compiles what nobody types in gives way to those that answer, as the system counts it: of 0 to 19.
-#[cfg(target_os = "linux")]
-const GIVES_WAY: i32 = 19;
 
 /// What the loop hears of.
 #[derive(Debug)]
@@ -79,14 +75,12 @@ enum Phase {
 struct Threads {
     name: &'static str,
     count: usize,
-    /// Whether they give way to all others.
-    give_way: bool,
     pool: OnceLock<Option<ThreadPool>>,
 }
 
 impl Threads {
     const fn new(name: &'static str, count: usize) -> Threads {
-        Threads { name, count, give_way: false, pool: OnceLock::new() }
+        Threads { name, count, pool: OnceLock::new() }
     }
 
     /// Does work on one of them; on this thread, where the system lets none start.
@@ -94,14 +88,7 @@ impl Threads {
         let pool = self.pool.get_or_init(|| {
             let name = self.name;
             let named = move |number| format!("lsp {name} {number}");
-            let give_way = self.give_way;
-            let started = move |_| {
-                if give_way {
-                    give_way_to_others()
-                }
-            };
-            let threads = ThreadPoolBuilder::new().num_threads(self.count).stack_size(STACK).thread_name(named);
-            threads.start_handler(started).build().ok()
+            ThreadPoolBuilder::new().num_threads(self.count).stack_size(STACK).thread_name(named).build().ok()
         });
         match pool {
             Some(pool) => pool.spawn(work),
@@ -110,19 +97,11 @@ impl Threads {
     }
 }
 
-/// Lets the system run other threads rather than this one. Where it cannot, answers wait as long as its slices of time are.
-fn give_way_to_others() {
-    #[cfg(target_os = "linux")]
-    let _ = rustix::process::setpriority_process(Some(rustix::thread::gettid()), GIVES_WAY);
-}
-
 pub(super) struct Server<W> {
     to: W,
     events: SyncSender<Event>,
     answering: Threads,
-    /// Of what is typed in or seen, and of the rest.
     compilers: Threads,
-    behind: Threads,
     phase: Phase,
     documents: Documents,
     analyses: Analyses,
@@ -160,8 +139,7 @@ impl<W: Write> Server<W> {
             tasks: Tasks::new(events.clone(), spelled),
             events,
             answering: Threads::new("answer", ANSWERING),
-            compilers: Threads::new("compile", 1),
-            behind: Threads { give_way: true, ..Threads::new("compile behind", 1) },
+            compilers: Threads::new("compile", COMPILING),
             phase: Phase::Begun,
             documents: Documents::default(),
             analyses: Analyses::default(),
@@ -521,9 +499,7 @@ impl<W: Write> Server<W> {
         let Some(version) = self.documents.get(spec).map(|document| document.version) else { return };
         let (spec, snapshot, events) = (spec.to_path_buf(), self.snapshot(), self.events.clone());
         self.compiling += 1;
-        let is_seen = [&self.edited, &self.focused].contains(&&Some(spec.clone()));
-        let threads = if is_seen { &self.compilers } else { &self.behind };
-        threads.spawn(move || {
+        self.compilers.spawn(move || {
             let analysed = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| snapshot.analysis(&spec)));
             let _ = events.send(Event::Analysed { spec, version, analysis: analysed.ok() });
         });
