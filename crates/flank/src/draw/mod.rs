@@ -263,9 +263,7 @@ fn write(
     let mut written = Vec::new();
     for (what, drawing) in drawings {
         let before = folder.written.len();
-        for format in &request.format {
-            folder.picture_as(&format!("{stem}.{}", what.name()), &drawing.picture, *format)?;
-        }
+        folder.picture_as(&format!("{stem}.{}", what.name()), &drawing.picture, &request.format)?;
         let files = folder.written[before..].to_vec();
         written.push(WrittenPicture { what: *what, shows: drawing.shows.clone(), files });
     }

@@ -9,6 +9,7 @@ use flank_export::{
     write_csv, write_grid_csv, write_grid_json, write_inp, write_json, write_motion_csv, write_motion_json, write_nc,
     write_obj, write_parquet, write_step, write_step_assembly, write_step_body, write_stl, write_vtp, write_vtu,
 };
+use rayon::prelude::*;
 
 use crate::project::choices::{PictureFormat, PointFormat, ReportFormat, TableFormat};
 use crate::project::failure::Failure;
@@ -140,8 +141,7 @@ impl<'a> Folder<'a> {
 
     /// A picture as PNG and SVG.
     pub(crate) fn picture(&mut self, name: &str, drawn: &Picture) -> Result<(), Failure> {
-        self.picture_as(name, drawn, PictureFormat::Png)?;
-        self.picture_as(name, drawn, PictureFormat::Svg)
+        self.picture_as(name, drawn, &[PictureFormat::Png, PictureFormat::Svg])
     }
 
     /// The same after what `meanwhile` writes: the picture is painted beside it, on another thread.
@@ -163,15 +163,17 @@ impl<'a> Folder<'a> {
         self.text(&format!("{name}.svg"), &svg)
     }
 
-    /// A picture in one format.
-    pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, format: PictureFormat) -> Result<(), Failure> {
-        match format {
-            PictureFormat::Png => {
-                let png = drawn.png().map_err(|error| error.to_string())?;
-                self.write(&format!("{name}.png"), |out| Ok(out.write_all(&png)?))
-            }
-            PictureFormat::Svg => self.text(&format!("{name}.svg"), &drawn.svg()),
+    /// A picture in some formats, all painted at the same time.
+    pub(crate) fn picture_as(&mut self, name: &str, drawn: &Picture, formats: &[PictureFormat]) -> Result<(), Failure> {
+        let painted = formats.par_iter().map(|format| match format {
+            PictureFormat::Png => drawn.png().map(|png| ("png", png)),
+            PictureFormat::Svg => Ok(("svg", drawn.svg().into_bytes())),
+        });
+        let painted = painted.collect::<Result<Vec<_>, _>>().map_err(|error| error.to_string())?;
+        for (ending, bytes) in painted {
+            self.write(&format!("{name}.{ending}"), |out| Ok(out.write_all(&bytes)?))?;
         }
+        Ok(())
     }
 
     /// Axis positions over a motion.

@@ -74,7 +74,7 @@ impl Target {
             let name = self.file.clone().unwrap_or_else(|| format!("{job}.report.{}", format.name()));
             if *format == ReportFormat::Md {
                 for figure in document.figures() {
-                    folder.picture_as(&figure.name, &figure.picture, PictureFormat::Svg)?;
+                    folder.picture_as(&figure.name, &figure.picture, &[PictureFormat::Svg])?;
                 }
             }
             folder.report(&name, document, *format)?;
