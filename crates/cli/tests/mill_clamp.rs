@@ -157,6 +157,10 @@ fn clearances_are_proven_between_positions_or_told_not_to_be() {
     assert_eq!((number(&kept["proven"]["proven"]), number(&kept["proven"]["blocks"])), (40.0, 40.0), "{kept}");
     assert!((number(&kept["proven"]["limit"]) - 0.099).abs() < 1e-12, "{kept}");
     let least = number(&kept["least"]);
+    // between the positions the ball comes no nearer than a um: that is proven with 4 um to spare
+    let spec = written(&out, "close.chain", &clear(least - 0.001));
+    let found = json(&spec, &out, &["--certify=4um"]);
+    assert_eq!(number(&found["clearances"][0]["proven"]["proven"]), 40.0, "{found}");
     // what is solved at the positions is kept, but not by so much more between them
     let spec = written(&out, "near.chain", &clear(least - 1e-4));
     let (code, _, told) = mill(&spec, &out, &["--certify=1um", "--json"]);

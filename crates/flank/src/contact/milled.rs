@@ -1,8 +1,8 @@
-//! A pair with a milled flank: where its ridges touch the mate, and how evenly the pair turns then.
+//! A pair with a milled flank: where it touches the mate, and how evenly the pair turns then.
 //!
 //! The gap g(x, lag) from the generated flank to its mate grows with the lag, and the milled flank is higher by h(x). So a pair of teeth
 //! stands where the largest of all lags is that brings g down to h. On a ridge h has a kink, from which it falls to both sides faster
-//! than the gap grows: the places are looked for on the ridges.
+//! than the gap grows: the places are looked for on the ridges. What one pass leaves is smooth: they are looked for on rows, and between them.
 
 use flank_draw::{DrawnContact, MilledPairDrawing, PassChart};
 use flank_export::text::shown_unit;
@@ -16,16 +16,18 @@ use crate::contact::pattern::{reach_of, reach_of_film};
 use crate::contact::place::{fine, fine_unit};
 use crate::contact::result::{MilledContact, MilledPattern};
 use crate::contact::rolling::Rolling;
-use crate::convert::milling::flank::{MilledFlank, RidgeAt};
+use crate::convert::milling::flank::{Crest, MilledFlank, MilledPlace};
 use crate::project::units;
 
-/// Places of each ridge from which the highest against the mate is looked for.
+/// Places of each crest from which the highest against the mate is looked for.
 const COLUMNS: usize = 21;
 /// Roll positions while the contact goes over one ridge.
 const PER_RIDGE: f64 = 8.0;
 const MOST_PARTS: isize = 40;
-/// Ridges on which it is looked for at each roll position.
+/// Crests on which it is looked for at each roll position.
 const TRIED: usize = 3;
+/// How far apart places are among which the highest is looked for, in columns or rows, again and again.
+const APART: [f64; 3] = [0.5, 0.125, 0.03125];
 /// The ridges beside the contact, in passes, are looked at too.
 const BESIDE: f64 = 2.0;
 /// By how much the lag is changed to see how the gap follows, mm along the normal.
@@ -44,7 +46,7 @@ pub(crate) struct MilledPair {
     pub(crate) drawing: MilledPairDrawing,
 }
 
-/// A place of a ridge: after which pass, its share along it, and how far it is ahead.
+/// A place of a crest: which, the share along it, and how far it is ahead.
 type Place = (usize, f64, f64);
 
 /// A roll position at which the pair of teeth that the others are told by is near to its mate.
@@ -77,6 +79,8 @@ struct Search<'a> {
     /// From points of the flank to its mate, of which these are points.
     gaps: GapProblem,
     mate: &'a [SurfacePoint],
+    /// Points of the flank itself, beyond the milled part, too.
+    own: &'a [SurfacePoint],
     /// How far away it is looked for, mm.
     reach: f64,
     /// Which of both members is milled, its surface and its frame.
@@ -109,6 +113,7 @@ pub(crate) fn rolled<'j, 'g>(
         flank,
         gaps,
         mate: &members.points[1 - member],
+        own: &members.points[member],
         reach: reach_of(rolling),
         member,
         surface: &surface.name,
@@ -157,12 +162,14 @@ pub(crate) fn rolled<'j, 'g>(
     let result = MilledContact {
         milling: milling.to_string(),
         surface: surface.name.clone(),
-        ridge_um: 1e3 * flank.highest(),
+        has_one_pass: flank.has_one_pass(),
+        ridge_um: 1e3 * flank.ends()[0],
+        least_um: 1e3 * flank.ends()[1],
         unit: fine_unit(lag.dimension).to_string(),
         peak_to_peak: of_milled,
         generated_peak_to_peak: of_generated,
         ahead: spread(3),
-        at_most: fine(lag.dimension, (flank.highest() + flank.stock()) / lever),
+        at_most: fine(lag.dimension, (flank.ends()[0] + flank.stock()) / lever),
         patterns,
         rolls: rows.iter().map(|row| row[0]).collect(),
         generated: rows.iter().map(|row| row[1]).collect(),
@@ -194,7 +201,7 @@ pub(crate) fn rolled<'j, 'g>(
         path: shown.flanks[member].path.iter().map(|(_, line)| line.clone()).collect(),
         charts: vec![
             chart("error over a pitch", "of the generated and of the milled pair", errors),
-            chart("what the ridges add", "by how much they hold the driven member away", away),
+            chart("what is left adds", "by how much it holds the driven member away", away),
         ],
     };
     MilledPair { result, patches, drawing }
@@ -259,54 +266,66 @@ impl Search<'_> {
     /// By how much the lag of the pair of teeth goes beyond the composite one of the generated pair, in the direction that opens.
     fn ahead(&self, positions: &[Position]) -> Vec<Option<f64>> {
         let along = |column: usize| column as f64 / (COLUMNS - 1) as f64;
-        let ridges: Vec<Vec<Option<RidgeAt>>> = (0..self.flank.passes() - 1)
-            .into_par_iter()
-            .map(|after| (0..COLUMNS).map(|column| self.flank.ridge(after, along(column))).collect())
-            .collect();
-        let known: Vec<(usize, usize, &RidgeAt)> = ridges
+        let solved = self.own.iter().filter(|point| point.outcome == Outcome::Solved);
+        let crests = self.flank.crests(solved.map(|point| point.position));
+        let of_crest = |crest: &Crest| (0..COLUMNS).map(|column| self.flank.place_of(*crest, along(column))).collect();
+        let places: Vec<Vec<Option<MilledPlace>>> = crests.par_iter().map(of_crest).collect();
+        let known: Vec<(usize, usize, &MilledPlace)> = places
             .iter()
             .enumerate()
-            .flat_map(|(after, row)| row.iter().enumerate().map(move |(column, ridge)| (after, column, ridge)))
-            .filter_map(|(after, column, ridge)| Some((after, column, ridge.as_ref()?)))
+            .flat_map(|(crest, row)| row.iter().enumerate().map(move |(column, place)| (crest, column, place)))
+            .filter_map(|(crest, column, place)| Some((crest, column, place.as_ref()?)))
             .collect();
-        let nodes: Vec<SurfacePoint> = known.iter().map(|(_, _, ridge)| node(ridge.line)).collect();
+        let nodes: Vec<SurfacePoint> = known.iter().map(|(_, _, place)| node(place.line)).collect();
         let [near, opened] = [0, 1].map(|k| {
             let at: Vec<[f64; 2]> = positions.iter().map(|position| position.opened()[k]).collect();
             self.gaps.each(&nodes, &at, self.mate, self.reach)
         });
         let of_position = |(k, position): (usize, &Position)| {
-            let ahead = |(place, (after, column, ridge)): (usize, &(usize, usize, &RidgeAt))| {
-                let ahead = position.ahead(ridge.height, [near[place][k]?, opened[place][k]?])?;
-                Some((*after, along(*column), ahead))
+            let ahead = |(place, (crest, column, at)): (usize, &(usize, usize, &MilledPlace))| {
+                let ahead = position.ahead(at.height, [near[place][k]?, opened[place][k]?])?;
+                Some((*crest, along(*column), ahead))
             };
             let places: Vec<Place> = known.iter().enumerate().filter_map(ahead).collect();
-            // of each ridge the highest place by the parabola through its columns
-            let mut ridges: Vec<Place> = Vec::new();
-            for row in places.chunk_by(|a, b| a.0 == b.0) {
+            // of each crest the highest place by the parabola through its columns
+            let highest = |row: &[Place]| {
                 let most = (0..row.len()).max_by(|a, b| row[*a].2.total_cmp(&row[*b].2)).unwrap_or_default();
-                let three: Vec<[f64; 2]> = row
-                    .get(most.wrapping_sub(1)..=most + 1)
-                    .unwrap_or_default()
-                    .iter()
-                    .map(|at| [at.1, at.2])
-                    .collect();
+                let three = row.get(most.wrapping_sub(1)..=most + 1).unwrap_or_default();
+                let three: Vec<[f64; 2]> = three.iter().map(|at| [at.1, at.2]).collect();
                 let (share, ahead) = vertex(&three).unwrap_or((row[most].1, row[most].2));
-                ridges.push((row[most].0, share, ahead));
-            }
-            ridges.sort_by(|a, b| b.2.total_cmp(&a.2));
-            // those beside the contact, and those that look highest
-            let beside = self.flank.place(position.own.in_members[self.member]).map_or(0.0, |place| place[0]);
-            let nearest = beside * (self.flank.passes() - 1) as f64 - 0.5;
-            let is_tried =
-                |(rank, ridge): &(usize, &Place)| *rank < TRIED || (ridge.0 as f64 - nearest).abs() <= BESIDE;
-            let on_ridges = ridges
-                .iter()
-                .enumerate()
-                .filter(is_tried)
-                .map(|(_, (after, share, ahead))| self.highest_on(*after, (*share, *ahead), position));
-            on_ridges.chain([self.at_contact(position)]).reduce(f64::max)
+                (row[most].0, share, ahead)
+            };
+            let highest: Vec<Place> = places.chunk_by(|a, b| a.0 == b.0).map(highest).collect();
+            let tried = self.tried(&crests, &highest, position).into_iter();
+            let on_crests = tried.map(|place| match crests[place.0] {
+                Crest::Row(row) => self.highest_beside(row, &highest, position),
+                crest => self.highest_on(crest, (place.1, place.2), position).1,
+            });
+            on_crests.chain([self.at_contact(position)]).reduce(f64::max)
         };
         positions.par_iter().enumerate().map(of_position).collect()
+    }
+
+    /// Of the highest places of the crests those that are worth a closer look: those that look highest, and of ridges those beside the contact.
+    /// A row that stands lower than one beside it leads to the same place.
+    fn tried(&self, crests: &[Crest], highest: &[Place], position: &Position) -> Vec<Place> {
+        let beside = self.flank.place(position.own.in_members[self.member]).map_or(0.0, |place| place[0]);
+        let nearest = self.flank.number_at(beside);
+        let is_peak = |k: &usize| {
+            let is_higher = |other: Option<&Place>| other.is_some_and(|other| other.2 > highest[*k].2);
+            let is_row = matches!(crests[highest[*k].0], Crest::Row(_));
+            !is_row || !is_higher(highest.get(k + 1)) && !is_higher(k.checked_sub(1).map(|before| &highest[before]))
+        };
+        let mut peaks: Vec<Place> = (0..highest.len()).filter(is_peak).map(|k| highest[k]).collect();
+        peaks.sort_by(|a, b| b.2.total_cmp(&a.2));
+        let is_tried = |(rank, place): &(usize, &Place)| {
+            let is_beside = match crests[place.0] {
+                Crest::Ridge(after) => (after as f64 - nearest).abs() <= BESIDE,
+                Crest::Row(_) | Crest::Border { .. } => false,
+            };
+            *rank < TRIED || is_beside
+        };
+        peaks.iter().enumerate().filter(is_tried).map(|(_, place)| *place).collect()
     }
 
     /// Where the generated flanks touch, with what is left there; beside the milled part the flank is as generated.
@@ -316,48 +335,49 @@ impl Search<'_> {
         (own.lag - position.lag) * own.opening.signum() + left / own.opening.abs()
     }
 
-    /// The place of a ridge that is most ahead, near a share along it.
-    fn highest_on(&self, after: usize, (mut along, mut best): (f64, f64), position: &Position) -> f64 {
-        for apart in [0.5, 0.125, 0.03125] {
-            let apart = apart / (COLUMNS - 1) as f64;
-            let places = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| along + k * apart);
-            let places = places.into_iter().filter(|place| (0.0..=1.0).contains(place));
-            let ridges: Vec<(f64, RidgeAt)> =
-                places.filter_map(|place| Some((place, self.flank.ridge(after, place)?))).collect();
-            let nodes: Vec<SurfacePoint> = ridges.iter().map(|(_, ridge)| node(ridge.line)).collect();
-            let gaps = self.gaps.each(&nodes, &position.opened(), self.mate, self.reach);
-            let values: Vec<[f64; 2]> = ridges
+    /// The place of a crest that is most ahead, near a share along it: its share, and how far.
+    fn highest_on(&self, crest: Crest, start: (f64, f64), position: &Position) -> (f64, f64) {
+        let of = |places: &[f64]| {
+            let known: Vec<(f64, MilledPlace)> = places
                 .iter()
-                .zip(&gaps)
-                .filter_map(|((place, ridge), gaps)| {
-                    Some([*place, position.ahead(ridge.height, [gaps[0]?, gaps[1]?])?])
-                })
+                .filter(|place| (0.0..=1.0).contains(*place))
+                .filter_map(|place| Some((*place, self.flank.place_of(crest, *place)?)))
                 .collect();
-            let Some(most) = (0..values.len()).max_by(|a, b| values[*a][1].total_cmp(&values[*b][1])) else { break };
-            (along, best) = match values.get(most.wrapping_sub(1)..=most + 1) {
-                Some(three) => vertex(three).unwrap_or((values[most][0], values[most][1])),
-                None => (values[most][0], values[most][1]),
+            let nodes: Vec<SurfacePoint> = known.iter().map(|(_, place)| node(place.line)).collect();
+            let gaps = self.gaps.each(&nodes, &position.opened(), self.mate, self.reach);
+            let ahead = |((share, place), gaps): (&(f64, MilledPlace), &Vec<Option<f64>>)| {
+                Some([*share, position.ahead(place.height, [gaps[0]?, gaps[1]?])?])
             };
-        }
-        best
+            known.iter().zip(&gaps).filter_map(ahead).collect()
+        };
+        highest_near(start, 1.0 / (COLUMNS - 1) as f64, of)
+    }
+
+    /// How far the highest place of what one pass leaves is ahead, near a row; `highest` are those of the rows.
+    fn highest_beside(&self, row: f64, highest: &[Place], position: &Position) -> f64 {
+        let last = (self.flank.rows() - 1) as f64;
+        let rows: Vec<&Place> = highest.iter().filter(|place| place.0 < self.flank.rows()).collect();
+        // the highest places of neighbouring rows lie on a line across them
+        let start = |row: f64| -> Option<(f64, f64)> {
+            let after = rows.partition_point(|place| (place.0 as f64) < row);
+            let (a, b) = (rows.get(after.saturating_sub(1))?, rows.get(after).or(rows.last())?);
+            let share = if a.0 == b.0 { 0.0 } else { (row - a.0 as f64) / (b.0 - a.0) as f64 };
+            Some((a.1 + share * (b.1 - a.1), f64::NEG_INFINITY))
+        };
+        let of = |places: &[f64]| {
+            let within = places.iter().filter(|place| (0.0..=last).contains(*place));
+            within
+                .filter_map(|place| Some([*place, self.highest_on(Crest::Row(*place), start(*place)?, position).1]))
+                .filter(|[_, ahead]| ahead.is_finite())
+                .collect()
+        };
+        highest_near((row, f64::NEG_INFINITY), 1.0, of).1
     }
 
     /// The least gaps with the generated and with the milled flank, on passes and ridges, over positions of both.
     fn pattern(&self, positions: &[([f64; 2], [f64; 2])], compound: f64) -> ([Patch; 2], [MilledPattern; 2]) {
         let along = |column: usize| column as f64 / (PATTERN_COLUMNS - 1) as f64;
-        let every = (2 * self.flank.passes()).div_ceil(PATTERN_ROWS);
-        let passes: Vec<usize> = (0..self.flank.passes()).step_by(every).collect();
-        // a pass, the ridge behind it, and so on
-        let of_pass = |pass: &usize| -> Vec<Vec<Option<RidgeAt>>> {
-            let on_pass =
-                |column: usize| Some(RidgeAt { line: self.flank.on_pass(*pass, along(column)), height: f64::NAN });
-            let own = (0..PATTERN_COLUMNS).map(on_pass).collect();
-            let is_last = *pass + 1 == self.flank.passes();
-            let ridge =
-                (!is_last).then(|| (0..PATTERN_COLUMNS).map(|column| self.flank.ridge(*pass, along(column))).collect());
-            std::iter::once(own).chain(ridge).collect()
-        };
-        let mut places: Vec<Option<RidgeAt>> = passes.par_iter().flat_map_iter(of_pass).flatten().collect();
+        let mut places = self.rows_of_pattern(&along);
         let rows = places.len() / PATTERN_COLUMNS;
         let nothing = SurfacePoint { outcome: Outcome::NotConverged { iterations: 0 }, ..node([f64::NAN; 6]) };
         let nodes: Vec<SurfacePoint> =
@@ -388,6 +408,27 @@ impl Search<'_> {
         };
         let [(generated, of_generated), (milled, of_milled)] = [false, true].map(of);
         ([generated, milled], [of_generated, of_milled])
+    }
+
+    /// Places of a pass, the ridge behind it, and so on; of one pass alone those of its rows. On a pass the height is no number.
+    fn rows_of_pattern(&self, along: &(dyn Fn(usize) -> f64 + Sync)) -> Vec<Option<MilledPlace>> {
+        let of_crest =
+            |crest: Crest| (0..PATTERN_COLUMNS).map(|column| self.flank.place_of(crest, along(column))).collect();
+        if self.flank.has_one_pass() {
+            let rows: Vec<Crest> = (0..2 * self.flank.rows() - 1).map(|row| Crest::Row(0.5 * row as f64)).collect();
+            return rows.into_par_iter().map(of_crest).collect::<Vec<Vec<_>>>().into_iter().flatten().collect();
+        }
+        let every = (2 * self.flank.passes()).div_ceil(PATTERN_ROWS);
+        let passes: Vec<usize> = (0..self.flank.passes()).step_by(every).collect();
+        let of_pass = |pass: &usize| -> Vec<Vec<Option<MilledPlace>>> {
+            let on_pass =
+                |column: usize| Some(MilledPlace { line: self.flank.on_pass(*pass, along(column)), height: f64::NAN });
+            let own = (0..PATTERN_COLUMNS).map(on_pass).collect();
+            let is_last = *pass + 1 == self.flank.passes();
+            let ridge = (!is_last).then(|| of_crest(Crest::Ridge(*pass)));
+            std::iter::once(own).chain(ridge).collect()
+        };
+        passes.par_iter().flat_map_iter(of_pass).flatten().collect()
     }
 
     fn patch(&self, name: &str, rows: usize, nodes: &[SurfacePoint], [gaps, left]: [Vec<Option<f64>>; 2]) -> Patch {
@@ -423,6 +464,20 @@ fn field(name: &str, meaning: &str, values: Vec<Option<f64>>) -> Field {
         meaning: meaning.to_string(),
         values: Values::Scalars(values.into_iter().collect()),
     }
+}
+
+/// The highest value, and where, near a start: of places around it, nearer and nearer together. `of` gives place and value of those that have one.
+fn highest_near(start: (f64, f64), unit: f64, of: impl Fn(&[f64]) -> Vec<[f64; 2]>) -> (f64, f64) {
+    let (mut at, mut best) = start;
+    for apart in APART {
+        let values = of(&[-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at + k * apart * unit));
+        let Some(most) = (0..values.len()).max_by(|a, b| values[*a][1].total_cmp(&values[*b][1])) else { break };
+        (at, best) = match values.get(most.wrapping_sub(1)..=most + 1) {
+            Some(three) => vertex(three).unwrap_or((values[most][0], values[most][1])),
+            None => (values[most][0], values[most][1]),
+        };
+    }
+    (at, best)
 }
 
 /// The highest place of the parabola through three places that are evenly apart, if it has one between them.

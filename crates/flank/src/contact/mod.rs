@@ -189,10 +189,6 @@ fn milled_beside<'j, 'g>(
     let planned = MilledFlank::planned(job, milling, (&request.jobs, session))?;
     session.check()?;
     Ok(match planned {
-        Ok(flank) if flank.passes() == 1 => {
-            let message = format!("{name} has one pass, and contacts are looked for on the ridges between passes");
-            (None, vec![NotDone::new(NotDoneKind::NotMilled, name, message)])
-        }
         Ok(flank) => {
             let _working = session.begin(format!("rolling {} as {name} mills it", members.contact.name))?;
             let film = request.compound;

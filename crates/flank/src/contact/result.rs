@@ -80,24 +80,29 @@ pub struct ProvenContact {
     pub error: Option<f64>,
 }
 
-/// A pair whose one flank is milled: its ridges touch the mate.
+/// A pair whose one flank is milled: what is left of it touches the mate.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct MilledContact {
     /// The milling.
     pub milling: String,
     /// The flank that it mills.
     pub surface: String,
-    /// Its highest ridge beside the stock, um.
+    /// Whether one pass with the side of the cutter covers it, so that there are no ridges.
+    pub has_one_pass: bool,
+    /// The most that is left beside the stock, um: its highest ridge, if there are any.
     pub ridge_um: f64,
+    /// The least of it, um; negative where the cutter goes too deep.
+    pub least_um: f64,
     /// `urad` or `um`, of errors.
     pub unit: String,
     /// The composite error's greatest less its least value over a pitch, at `rolls`.
     pub peak_to_peak: f64,
     /// The same of the generated pair, at the same roll positions.
     pub generated_peak_to_peak: f64,
-    /// By how much the ridges hold the driven member away from where the generated pair has it, at the least and at the most.
+    /// By how much what is left holds the driven member away from where the generated pair has it, at the least and at the most; negative where it falls
+    /// back.
     pub ahead: [f64; 2],
-    /// More than this it cannot be: the highest ridge and the stock over the shortest lever.
+    /// More than this it cannot be: the most that is left, with the stock, over the shortest lever.
     pub at_most: f64,
     /// What the marking compound shows on the milled part: of the generated flank, then of the milled one.
     pub patterns: [MilledPattern; 2],
@@ -109,7 +114,8 @@ pub struct MilledContact {
     pub milled: Vec<f64>,
 }
 
-/// What the marking compound shows on the milled part of a flank, at places of the passes and of the ridges between them.
+/// What the marking compound shows on the milled part of a flank, at places of the passes and of the ridges between them, or
+/// of the rows of one pass.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct MilledPattern {
     /// Whether the flank is as it is milled, else as generated.

@@ -208,13 +208,17 @@ impl MilledContact {
         let [size, generated, least, most, bound] =
             [self.peak_to_peak, self.generated_peak_to_peak, self.ahead[0], self.ahead[1], self.at_most]
                 .map(|value| fixed(value, 3));
-        let ridge = fixed(self.ridge_um, 3);
+        let [ridge, least_left] = [self.ridge_um, self.least_um].map(|height| fixed(height, 3));
+        let (what, holds) = match self.has_one_pass {
+            true => (format!("one pass leaves {least_left} to {ridge} um"), "it holds the pair"),
+            false => (format!("ridges up to {ridge} um"), "the ridges hold it"),
+        };
         let share = |pattern: &MilledPattern| fixed(100.0 * pattern.within as f64 / pattern.points.max(1) as f64, 1);
         let [of_generated, of_milled] = patterns.each_ref().map(share);
         vec![
-            ("milled", format!("{surface} by {milling}, ridges up to {ridge} um")),
+            ("milled", format!("{surface} by {milling}, {what}")),
             ("", format!("error peak to peak {size} {unit} over a pitch, of the generated pair {generated}")),
-            ("", format!("the ridges hold it {least} to {most} {unit} away; {bound} at the most")),
+            ("", format!("{holds} {least} to {most} {unit} away; {bound} at the most")),
             ("", format!("pattern {of_milled} % of the milled part, as generated {of_generated} %")),
         ]
     }

@@ -16,4 +16,6 @@ pub(crate) mod outline;
 pub(crate) mod pose;
 pub(crate) mod series;
 pub(crate) mod side;
+pub(crate) mod slice;
+pub(crate) mod smooth;
 pub(crate) mod sweep;

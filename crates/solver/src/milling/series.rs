@@ -46,6 +46,11 @@ impl PoseSeries {
         self.coefficients.len()
     }
 
+    /// Of each polynomial T₀, T₁, … its six coefficients.
+    pub(crate) fn coefficients(&self) -> &[[f64; 6]] {
+        &self.coefficients
+    }
+
     /// The values at a share.
     pub fn at(&self, share: f64) -> [f64; 6] {
         self.moving(share)[0]
@@ -175,20 +180,18 @@ impl PoseField {
         PoseSeries::through(&(0..rows).map(at).collect::<Vec<[f64; 6]>>())
     }
 
-    /// How fast the position changes with each share at the most, mm.
-    pub(crate) fn rates(&self) -> [f64; 2] {
+    /// How many polynomials of Chebyshev's in both shares it is a sum of, and the position's coefficients, row by row.
+    pub(crate) fn position_coefficients(&self) -> ([usize; 2], Vec<[f64; 3]>) {
         let [rows, columns] = self.counts;
         let along: Vec<PoseSeries> = self.values.chunks(columns).map(PoseSeries::through).collect();
-        let mut rates = [0.0; 2];
+        let mut out = vec![[0.0; 3]; rows * columns];
         for column in 0..columns {
             let line: Vec<[f64; 6]> = along.iter().map(|series| series.coefficients[column]).collect();
-            for (row, coefficient) in PoseSeries::through(&line).coefficients.iter().enumerate().take(rows) {
-                let [length, _] = lengths(coefficient);
-                rates[0] += fastest(row) * length;
-                rates[1] += fastest(column) * length;
+            for (row, [x, y, z, ..]) in PoseSeries::through(&line).coefficients.into_iter().enumerate() {
+                out[row * columns + column] = [x, y, z];
             }
         }
-        rates
+        (self.counts, out)
     }
 
     /// How far the polynomial may be off between its values: mm, and for directions radians.

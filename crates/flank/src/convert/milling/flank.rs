@@ -3,6 +3,7 @@
 use flank_chain_dsl::{Job, Milling};
 use flank_draw::PageMilling;
 use flank_solver::{PoseSeries, SweptCutter, cusp};
+use rayon::prelude::*;
 
 use super::cutter::MillingCutter;
 use super::on_page::on_page;
@@ -19,6 +20,11 @@ const MOST_STEPS: usize = 20;
 const CLOSE: f64 = 1e-12;
 /// So far beside the milled part a point still belongs to it, in shares: rounding.
 const BESIDE: f64 = 1e-9;
+/// A surface that reaches so much farther than the milled part, in shares, goes on beyond it.
+const GOES_ON: f64 = 1e-3;
+/// Rows of a pass with the side on which contacts are looked for, and places of each for its heights.
+const ROWS: usize = 31;
+const COLUMNS: usize = 41;
 
 /// A milled flank. Lengths are mm, places are shares of the passes and along them, lines are position and normal in the frame of the flank.
 pub(crate) struct MilledFlank {
@@ -28,15 +34,27 @@ pub(crate) struct MilledFlank {
     /// The shares of the passes, and the cutter on each.
     shares: Vec<f64>,
     passes: Vec<PoseSeries>,
-    highest: f64,
+    /// The most and the least that is left, beside the stock.
+    ends: [f64; 2],
     stock: f64,
     pub(crate) labels: [String; 2],
     /// What the milling does not do as it should, though it leaves this.
     pub(crate) not_done: Vec<NotDone>,
 }
 
-/// A place of a ridge.
-pub(crate) struct RidgeAt {
+/// A line of a milled flank on which a mate may touch it first, over shares from 0 to 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Crest {
+    /// The ridge after a pass.
+    Ridge(usize),
+    /// A row of what one pass leaves, which has no ridges: any number from zero to [`MilledFlank::rows`] less one.
+    Row(f64),
+    /// Where the milled part ends and the flank as generated begins: at the low or high end of one of both shares.
+    Border { share: usize, is_high: bool },
+}
+
+/// A place of a crest.
+pub(crate) struct MilledPlace {
     pub(crate) line: [f64; 6],
     /// How high it stands over the flank, with the stock.
     pub(crate) height: f64,
@@ -74,19 +92,40 @@ impl MilledFlank {
     fn of_worked(worked: Worked<'_, '_>) -> Result<MilledFlank, Vec<NotDone>> {
         let Worked { target, result, found } = worked;
         let Some(Found { cutter, fields, milled, swept, map, .. }) = found else { return Err(result.not_done) };
-        let most = milled.plan.cusp.or_else(|| map.highest());
-        let (shares, passes, highest) = (milled.plan.shares[0].clone(), milled.ways, most.map_or(0.0, |at| at.height));
+        let (shares, passes) = (milled.plan.shares[0].clone(), milled.ways);
+        let ends = milled.plan.cusp.or_else(|| map.highest()).zip(map.deepest());
+        let ends = ends.map_or([0.0; 2], |(most, (least, _))| [most.height, least.height]);
         let (labels, stock, not_done) = (target.labels(), target.milling.stock, result.not_done);
-        Ok(MilledFlank { cutter, fields, swept, shares, passes, highest, stock, labels, not_done })
+        let mut flank = MilledFlank { cutter, fields, swept, shares, passes, ends, stock, labels, not_done };
+        if flank.has_one_pass() {
+            // at its borders it may leave more than at the points of the map
+            flank.ends = flank.ends_of_rows();
+        }
+        Ok(flank)
+    }
+
+    fn ends_of_rows(&self) -> [f64; 2] {
+        let places: Vec<(usize, usize)> = (0..ROWS).flat_map(|row| (0..COLUMNS).map(move |k| (row, k))).collect();
+        let left = |(row, column): &(usize, usize)| {
+            let place = self.place_of(Crest::Row(*row as f64), *column as f64 / (COLUMNS - 1) as f64)?;
+            Some([place.height - self.stock; 2])
+        };
+        let all: Vec<[f64; 2]> = places.par_iter().filter_map(left).collect();
+        all.into_iter().fold(self.ends, |[a, b], [c, d]| [a.max(c), b.min(d)])
     }
 
     pub(crate) fn passes(&self) -> usize {
         self.passes.len()
     }
 
-    /// The highest ridge beside the stock.
-    pub(crate) fn highest(&self) -> f64 {
-        self.highest
+    /// Whether one pass covers it, which leaves no ridges.
+    pub(crate) fn has_one_pass(&self) -> bool {
+        self.passes.len() == 1
+    }
+
+    /// The most and the least that is left, beside the stock: highest the ridges, where there are any.
+    pub(crate) fn ends(&self) -> [f64; 2] {
+        self.ends
     }
 
     /// What is left everywhere.
@@ -94,13 +133,59 @@ impl MilledFlank {
         self.stock
     }
 
-    /// A place of the ridge after a pass.
-    pub(crate) fn ridge(&self, after: usize, along: f64) -> Option<RidgeAt> {
-        let across = self.fields.surface.across(along);
-        let shares = [after, after + 1].map(|pass| self.shares[pass]);
-        let beside = [&self.passes[after], &self.passes[after + 1]];
-        let found = cusp(&across, beside, shares, along, &self.cutter.cutting)?;
-        Some(RidgeAt { line: across.at(found.share), height: found.height })
+    /// All lines on which a mate may touch first: ridges or, of one pass, rows, and the borders beyond which one of some points of the
+    /// flank lies.
+    pub(crate) fn crests(&self, points: impl Iterator<Item = [f64; 3]>) -> Vec<Crest> {
+        let mut beyond = [[false; 2]; 2];
+        for shares in points.filter_map(|point| self.place(point)) {
+            for (beyond, share) in beyond.iter_mut().zip(shares) {
+                beyond[0] |= share < -GOES_ON;
+                beyond[1] |= share > 1.0 + GOES_ON;
+            }
+        }
+        let borders = [0, 1].into_iter().flat_map(|share| [0, 1].map(|end| (share, end)));
+        let borders = borders.filter(|(share, end)| beyond[*share][*end]);
+        let borders = borders.map(|(share, end)| Crest::Border { share, is_high: end == 1 });
+        let lines: Vec<Crest> = match self.has_one_pass() {
+            true => (0..ROWS).map(|row| Crest::Row(row as f64)).collect(),
+            false => (0..self.passes() - 1).map(Crest::Ridge).collect(),
+        };
+        lines.into_iter().chain(borders).collect()
+    }
+
+    /// How many rows stand for one pass.
+    pub(crate) fn rows(&self) -> usize {
+        ROWS
+    }
+
+    /// Where a crest lies among its like: the number of a ridge or row that goes through a share of the passes.
+    pub(crate) fn number_at(&self, across: f64) -> f64 {
+        match self.has_one_pass() {
+            true => across * (ROWS - 1) as f64,
+            false => across * (self.passes() - 1) as f64 - 0.5,
+        }
+    }
+
+    /// A place of a crest; `None` where the cutter does not pass.
+    pub(crate) fn place_of(&self, crest: Crest, along: f64) -> Option<MilledPlace> {
+        match crest {
+            Crest::Ridge(after) => {
+                let across = self.fields.surface.across(along);
+                let shares = [after, after + 1].map(|pass| self.shares[pass]);
+                let beside = [&self.passes[after], &self.passes[after + 1]];
+                let found = cusp(&across, beside, shares, along, &self.cutter.cutting)?;
+                Some(MilledPlace { line: across.at(found.share), height: found.height })
+            }
+            Crest::Row(row) => {
+                let line = self.fields.surface.at([row / (ROWS - 1) as f64, along]);
+                Some(MilledPlace { line, height: self.swept.left(&line)?.height })
+            }
+            Crest::Border { share, is_high } => {
+                let end = f64::from(u8::from(is_high));
+                let shares = if share == 0 { [end, along] } else { [along, end] };
+                Some(MilledPlace { line: self.fields.surface.at(shares), height: 0.0 })
+            }
+        }
     }
 
     /// A place of the contact of a pass.

@@ -54,7 +54,10 @@ pub(super) fn proven(
             Clear::Missed { distance, shares, .. } => {
                 format!("it comes as near as {distance:.4} mm, to {}", (of.place)(shares))
             }
-            _ => "it comes so near that boxes would have to be very small: allow less, or ask for less distance".to_string(),
+            Clear::Open { proven } => format!(
+                "after {MOST_BOXES} boxes it is proven to stay {proven:.4} mm away there: allow less, or ask for less distance"
+            ),
+            Clear::Proven => unreachable!("the first that is not proven"),
         };
         NotDone::new(NotDoneKind::NotCertified, &of.name, message).with(vec![why])
     });
