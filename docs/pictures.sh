@@ -74,6 +74,7 @@ picture real_hob_run_out $hob --what left --set run_out="0.02 mm"
 picture worm_wheel_ease_off $wheel --what deviation "${flanks[@]}"
 picture worm_wheel_ease_off_shifted $wheel --what deviation "${flanks[@]}" --set oversize="2 mm" --set m.swivel="0 deg"
 picture ease_off_19x62 $ease_off --what deviation --surface pinion.concave --reference conjugate.concave
+picture hypoid_pinion_body specs/bodies/hypoid_pair_body.chain --what gear --surface pinion_concave
 picture traces specs/hobbing/crowned_gear.chain --what traces
 picture topography $ease_off --what topography --surface pinion.concave --reference conjugate.concave
 picture sensitivity $pinion --what sensitivity

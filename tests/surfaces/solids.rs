@@ -23,11 +23,12 @@ struct Asked<'a> {
     /// What of the text is replaced by what.
     changed: Option<(&'a str, &'a str)>,
     ball: Option<f64>,
+    step: Option<f64>,
 }
 
 impl<'a> Asked<'a> {
     fn new(spec: &'a str, job: &'a str, set: &'a [(&'a str, &'a str)]) -> Asked<'a> {
-        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None, ball: None }
+        Asked { spec, job, set, part: SolidPart::Gear, deviation: DEVIATION, changed: None, ball: None, step: None }
     }
 
     /// The result, and the triangles that were written of each solid, in a folder.
@@ -46,7 +47,7 @@ impl<'a> Asked<'a> {
             part: self.part,
             out: folder.to_path_buf(),
             format: vec![MeshFormat::Stl],
-            step: None,
+            step: self.step,
             deviation: self.deviation,
             density: 7850.0,
             ball: self.ball,
@@ -634,6 +635,39 @@ fn a_body_without_a_bore_is_closed_at_its_axis() {
         assert!((volume(&mesh) * share / (20.0 * section) - 1.0).abs() < 1e-3, "{part:?}: {}", volume(&mesh));
         assert!((body.volume_mm3 / (20.0 * section) - 1.0).abs() < 2e-8, "{}", body.volume_mm3);
     }
+}
+
+/// The sides of one tooth go on from spaces that wind, and reach no shaft beyond them: numbers and mesh of the part are there, which have the shaft,
+/// and in place of its STEP file the reason and ways out. The whole gear has one.
+#[test]
+fn a_tooth_of_a_shaft_that_is_longer_than_its_teeth_has_no_smooth_sides() {
+    let bore = "bore  = line(from: [front, reference_radius / 2], to: [back, reference_radius / 2])";
+    let shaft = "neck  = line(from: [front, reference_radius / 2], to: [front - 12 mm, reference_radius / 2])
+        end   = line(from: [front - 12 mm, reference_radius / 2], to: [front - 12 mm, reference_radius / 3])
+        bore  = line(from: [front - 12 mm, reference_radius / 3], to: [back, reference_radius / 3])";
+    let back = ("back  = line(from: [back, reference_radius / 2]", "back  = line(from: [back, reference_radius / 3]");
+    let spec = "specs/bodies/helical_gear_body.chain";
+    let text = std::fs::read_to_string(repository(spec)).expect("a spec");
+    assert!(text.contains(bore) && text.contains(back.0), "{spec}");
+    let longer = text.replace(bore, shaft).replace(back.0, back.1);
+    let asked = Asked::new(spec, "helical_gear_body", &[]);
+    let asked = Asked { step: Some(1e-4), changed: Some((&text, &longer)), ..asked };
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = Asked { part: SolidPart::Tooth, ..asked }.built(folder.path());
+    let told = &result.not_done()[0];
+    assert_eq!(told.kind, NotDoneKind::FaceInexact);
+    assert!(
+        told.message.contains("`neck` of the outline") && told.message.contains("by up to 12.0000 mm"),
+        "{}",
+        told.message
+    );
+    assert!(told.details[0].contains("option `solid gear`"), "{:?}", told.details);
+    assert!(!folder.path().join("helical_gear_body.step").exists());
+    let mesh = triangles(&folder.path().join("helical_gear_body.stl"));
+    let share = result.solids[0].volume_mm3 / f64::from(result.solids[0].teeth);
+    assert!((volume(&mesh) / share - 1.0).abs() < 1e-3, "a mesh within 10 um: {} of {share}", volume(&mesh));
+    let result = Asked { part: SolidPart::Gear, ..asked }.built(folder.path());
+    assert!(result.is_complete() && folder.path().join("helical_gear_body.step").exists(), "{:?}", result.not_done());
 }
 
 /// What is too narrow is named with the range that it has.

@@ -12,14 +12,20 @@ const PINION: [&str; 5] =
 
 /// The Python that `FLANK_READERS` names, where it has `gmsh`, which brings OpenCASCADE; where it has not, the test says that it is skipped.
 fn reader() -> Option<String> {
+    python_with("gmsh", "gmsh")
+}
+
+/// The same with a module of a package.
+fn python_with(module: &str, package: &str) -> Option<String> {
     let python = std::env::var("FLANK_READERS").unwrap_or_else(|_| "python3".into());
-    let has_gmsh = Command::new(&python).args(["-c", "import gmsh"]).output().is_ok_and(|run| run.status.success());
-    if !has_gmsh {
+    let import = format!("import {module}");
+    let has_it = Command::new(&python).args(["-c", &import]).output().is_ok_and(|run| run.status.success());
+    if !has_it {
         eprintln!(
-            "skipped 1 reader of STEP: no `gmsh` for {python}; pip install gmsh, and FLANK_READERS names its python"
+            "skipped 1 reader of STEP: no `{module}` for {python}; pip install {package}, and FLANK_READERS names its python"
         );
     }
-    has_gmsh.then_some(python)
+    has_it.then_some(python)
 }
 
 /// Each face against exact points that it was not made of, by a reader of others.
@@ -131,6 +137,52 @@ fn opencascade_finds_one_closed_body_of_each_part() {
         let count = |key: &str| found[key].as_i64().expect("a count");
         assert_eq!((count("solids"), count("shapes"), count("open_edges")), (1, 1, 0), "{name} {part}: {found}");
         let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
+        let share = if part == "gear" { 1.0 } else { number(body, "teeth") };
+        let off = number(&found, "volume") * share / number(body, "volume_mm3") - 1.0;
+        // OpenCASCADE itself integrates to some 1e-7
+        assert!(off.abs() < 3e-7, "{name} {part} {off:e}: {found}");
+    }
+}
+
+/// The kernel's own checks, without healing: all of it is valid, and no edge is shorter than 1e-4 mm. As it reads a body it takes for each
+/// edge and vertex the tolerance within which the faces beside it meet there: as good as the faces are, and 1e-6 mm for files as fine as a nanometre.
+#[test]
+fn opencascade_finds_nothing_to_heal() {
+    let out = folder("step-strict");
+    let Some(python) = python_with("OCP", "cadquery-ocp") else { return };
+    let to = out.to_str().expect("a plain path");
+    let bodies = [
+        ("bevel/pinion_19x62", "gear", "0.1um", 1e-4),
+        ("bevel/pinion_19x62", "tooth", "0.001um", 1e-6),
+        ("bodies/helical_gear_body", "gear", "0.001um", 1e-6),
+        ("bodies/helical_rack_body", "gear", "0.001um", 1e-6),
+    ];
+    for (name, part, step, tolerance) in bodies {
+        let run = flank(&[
+            "solve",
+            &format!("specs/{name}.chain"),
+            "--solid",
+            part,
+            &format!("--step={step}"),
+            "--out",
+            to,
+            "--json",
+        ]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let built: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let job = name.split('/').next_back().expect("a name");
+        let run = Command::new(&python)
+            .arg(top().join("crates/cli/tests/readers/strict.py"))
+            .arg(out.join(format!("{job}.step")))
+            .output()
+            .expect("it has just been run");
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
+        assert!(found["valid"] == true && found["solids"] == 1, "{name} {part}: {found}");
+        assert!(number(&found, "tolerance") <= tolerance, "{name} {part} {step}: {found}");
+        assert!(number(&found, "shortest") > 1e-4, "{name} {part}: {found}");
+        let body = &built["solids"][0];
         let share = if part == "gear" { 1.0 } else { number(body, "teeth") };
         let off = number(&found, "volume") * share / number(body, "volume_mm3") - 1.0;
         // OpenCASCADE itself integrates to some 1e-7

@@ -95,6 +95,12 @@ impl Blank {
         }
     }
 
+    /// How far a place `[z, rho]` lies beyond the ends of the spaces, mm; nothing between them.
+    pub fn beyond_ends(&self, place: [f64; 2]) -> f64 {
+        let [begin, _, end] = self.bounds();
+        [begin, end].map(|segment| -segment.bound().height(place)).into_iter().fold(0.0, f64::max)
+    }
+
     /// The place `[z, rho]` on the tip at a share of the way from begin to end.
     pub fn tip(&self, share: f64) -> [f64; 2] {
         let bounds = self.bounds();

@@ -48,20 +48,26 @@ enum Shared<'j, 'g> {
 }
 
 impl<'j, 'g> Borders<'j, 'g> {
+    /// `first` are the borders of another space: neighbours mostly share the same lines in all of them, and to find that they share no
+    /// others takes long.
+    ///
     /// # Errors
     /// If neighbours share no line.
     pub(crate) fn new(
         solid: &Solid,
         (pieces, beside): (&[Piece<'j, 'g>], &[Beside<'j, 'g>]),
         blank: &Blank,
+        first: Option<&Borders<'j, 'g>>,
     ) -> Result<Borders<'j, 'g>, Failure> {
         let joint = |k: usize| {
             let both = [pieces[k - 1].clone(), pieces[k].clone()];
-            let shared = shared(solid, [&both[0], &both[1]], blank)?;
+            let alike = first.and_then(|first| first.joints[k - 1].shared.alike([&both[0], &both[1]], blank));
+            let shared = alike.map_or_else(|| shared(solid, [&both[0], &both[1]], blank), Ok)?;
             Ok(Joint { pieces: both, shared })
         };
         let joints = (1..pieces.len()).map(joint).collect::<Result<Vec<_>, Failure>>()?;
-        let edges = edges(beside, |pieces| edge(solid, pieces, blank));
+        let known = first.and_then(|first| first.edges.as_ref()).map(|edges| &edges[0].shared);
+        let edges = edges(beside, |pieces| edge(solid, (pieces, known), blank));
         let mut borders = Borders { joints, edges, unknowns: Vec::new() };
         borders.unknowns =
             (0..pieces.len()).map(|k| borders.unknown(solid, &pieces[k], k, blank)).collect::<Result<_, Failure>>()?;
@@ -127,6 +133,29 @@ impl<'j, 'g> Borders<'j, 'g> {
         let (joint, own) = self.joint(k, side)?;
         let values = joint.values(own, self.unknowns[k], blank, shares);
         Some(values.ok_or_else(|| lost(solid, joint.pieces.each_ref(), blank)))
+    }
+}
+
+impl<'j, 'g> Shared<'j, 'g> {
+    /// What other neighbours have in common, if it is the same.
+    fn alike(&self, pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> Option<Shared<'j, 'g>> {
+        let line = |k: usize, (unknown, value): (usize, f64)| {
+            let points = pieces[k].on_line((unknown, value), blank, &ALONG);
+            (points.solved() == ALONG.len()).then(|| EndLine { unknown, value, points: positions(&points) })
+        };
+        match self {
+            Shared::Ends(lines) => {
+                let ends = [vec![line(0, lines[0])?], vec![line(1, lines[1])?]];
+                nearest(&ends).filter(|(_, gap)| *gap <= SAME_LINE).map(|(ends, _)| Shared::Ends(ends))
+            }
+            Shared::Onto { ending, line: end } => {
+                let other = pieces[1 - ending];
+                let points = line(*ending, *end)?.points;
+                other.values_at(&points, other.across_tool(blank)?, blank)?;
+                Some(Shared::Onto { ending: *ending, line: *end })
+            }
+            Shared::Meeting(_) => Some(Shared::Meeting(Rc::new(Course::new(pieces, blank, &ALONG)?))),
+        }
     }
 }
 
@@ -229,7 +258,11 @@ fn edges<'j, 'g>(
 }
 
 /// The line in which the last surface of a space and the first one of the next space end, so that there is no land between them.
-fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Option<Joint<'j, 'g>> {
+fn edge<'j, 'g>(
+    solid: &Solid,
+    (pieces, known): (&[Piece<'j, 'g>; 2], Option<&Shared<'j, 'g>>),
+    blank: &Blank,
+) -> Option<Joint<'j, 'g>> {
     let [last, first] = pieces;
     let near =
         |a: &SurfacePoint| first.known.iter().map(|b| apart(a.position, b.position)).fold(f64::INFINITY, f64::min);
@@ -237,7 +270,9 @@ fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Op
     let pitch = last.known.iter().map(arc).fold(0.0, f64::max) * last.arrangement.pitch(solid.teeth);
     let gap = last.known.iter().map(near).fold(f64::INFINITY, f64::min);
     let may = gap < NEAR * pitch;
-    let shared = may.then(|| ends_in_one_line([last, first], blank)).flatten()?;
+    let found =
+        || known.and_then(|known| known.alike([last, first], blank)).or_else(|| ends_in_one_line([last, first], blank));
+    let shared = may.then(found).flatten()?;
     Some(Joint { pieces: pieces.clone(), shared })
 }
 

@@ -59,7 +59,8 @@ fn built(
     for solid in &job.solids {
         let _working = session.begin(format!("building {}", solid.name))?;
         match one(job, solid, (request, &header), (&mut folder, session)) {
-            Ok((numbers, shapes)) => {
+            Ok((numbers, shapes, no_sides)) => {
+                not_done.extend(no_sides);
                 let too_far = numbers.step_deviation_mm.zip(request.step).filter(|(off, allowed)| off > allowed);
                 not_done.extend(too_far.map(|(off, allowed)| {
                     let message = format!(
@@ -112,7 +113,7 @@ fn one(
     solid: &Solid,
     (request, header): (&SolidRequest, &Header),
     (folder, session): (&mut Folder<'_>, Session<'_>),
-) -> Result<(SolidNumbers, Shapes), Failure> {
+) -> Result<(SolidNumbers, Shapes, Option<NotDone>), Failure> {
     let space::Space { body, names, off } = space::body(job, solid, session)?;
     let part = match request.part {
         // from the middle of its space to the middle of the same one a gear of one tooth goes all around
@@ -133,7 +134,13 @@ fn one(
         }
     }
     let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &names, (&body, part), tolerance));
-    let faces = faces.transpose()?;
+    let (faces, no_sides) = match faces.transpose() {
+        Ok(faces) => (faces, None),
+        Err(beyond) => {
+            let older = request.step.map(|_| folder.older(&file, ["step"].into_iter())).unwrap_or_default();
+            (None, Some(refusal::no_sides(solid, &beyond).with_more(older)))
+        }
+    };
     if let Some(faces) = faces.as_ref().filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed)) {
         folder.body_step(&file, header, faces)?;
     }
@@ -148,7 +155,7 @@ fn one(
         )
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
-    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }))
+    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }, no_sides))
 }
 
 /// What the files of a solid are called.

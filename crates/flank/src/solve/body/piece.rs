@@ -57,12 +57,15 @@ pub(crate) enum EndsOf {
 }
 
 impl<'j, 'g> Piece<'j, 'g> {
+    /// `before` are the same surface in the spaces before: its points are first looked for as these go on, and a search is spared.
+    ///
     /// # Errors
     /// If the surface is not sampled, or no point of its sample is solved.
     pub(crate) fn new(
         job: &'j Job<'g>,
         (solid, surface, arrangement): (&Solid, &'j GeneratedSurface<'g>, Arrangement),
         session: Session<'j>,
+        before: &[&Piece<'j, 'g>],
     ) -> Result<Piece<'j, 'g>, Failure> {
         let name = &surface.name;
         let sample = surface.sample.as_ref().ok_or_else(|| {
@@ -74,15 +77,20 @@ impl<'j, 'g> Piece<'j, 'g> {
         })?;
         let sample = thinned(sample);
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-        let solved = || as_solved(&problem(job, surface, coordinates, session), &sample);
-        let solved = session.sample((job, surface), &sample, SOLVED, solved);
+        let problem = || problem(job, surface, coordinates, session);
+        let piece = |known| {
+            let surface = Cow::Borrowed(surface);
+            Piece { job, surface, arrangement, session, known, problems: RefCell::default() }
+        };
+        if let Some(known) = led_to(before).and_then(|start| whole(&problem(), &sample, &start)) {
+            return Ok(piece(known));
+        }
+        let solved = session.sample((job, surface), &sample, SOLVED, || as_solved(&problem(), &sample));
         let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
         if !solved.points.iter().any(is_solved) {
             return Err(refusal::unsolved(job, (solid, surface), &solved.points));
         }
-        let known = solved.points.into_iter().filter(is_solved).collect();
-        let surface = Cow::Borrowed(surface);
-        Ok(Piece { job, surface, arrangement, session, known, problems: RefCell::default() })
+        Ok(piece(solved.points.into_iter().filter(is_solved).collect()))
     }
 
     /// The same surface in another space: farther on about the work's axis, or along its line.
@@ -282,6 +290,25 @@ impl<'j, 'g> Piece<'j, 'g> {
             is_whole.then(|| (0..found.len()).map(|k| found.unknowns(k)[unknown]).collect())
         })
     }
+}
+
+/// Unknowns in the middle of a sample as those in the spaces before go on.
+fn led_to(before: &[&Piece<'_, '_>]) -> Option<Vec<f64>> {
+    let middle = |piece: &Piece<'_, '_>| piece.known[piece.known.len() / 2].unknowns.clone();
+    match before {
+        [] => None,
+        [only] => Some(middle(only)),
+        [.., last_but_one, last] => {
+            let on = middle(last).into_iter().zip(middle(last_but_one));
+            Some(on.map(|(last, before)| 2.0 * last - before).collect())
+        }
+    }
+}
+
+/// The points of a sample on the branch that a start leads to, if it has all of them.
+fn whole(problem: &SurfaceProblem, sample: &Sample<'_>, start: &[f64]) -> Option<Vec<SurfacePoint>> {
+    let (points, _) = problem.solve_points(&sample.targets(), sample.counts, Some(start), None);
+    (points.solved() == points.len()).then(|| (0..points.len()).map(|k| points.point(k)).collect())
 }
 
 pub(crate) fn positions(points: &SurfacePoints) -> Vec<[f64; 3]> {

@@ -7,6 +7,7 @@ use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units::{self, length};
 use crate::solve::blank;
+use crate::solve::body::smooth::BeyondEnds;
 use crate::solve::reasons;
 
 /// That a solid has no body, with ways out.
@@ -25,6 +26,22 @@ pub(crate) fn no_body(solid: &Solid, failure: Failure) -> Result<NotDone, Failur
         Failure::Input(reason) => Ok(NotDone::new(NotDoneKind::NoBody, &solid.name, reason)),
         other => Err(other),
     }
+}
+
+/// A part that has no sides where its outline goes beyond its spaces, as that of a shaft does that is longer than its teeth.
+pub(crate) fn no_sides(solid: &Solid, BeyondEnds { segment, by }: &BeyondEnds) -> NotDone {
+    let message = format!(
+        "`{segment}` of the outline of `{}` lies beyond the ends of the spaces, by up to {}: smooth sides of one tooth or one space go on from \
+         its spaces, and end with them; no STEP file of it is written",
+        solid.name,
+        length(*by)
+    );
+    let ways = [
+        "the whole gear as a STEP file: option `solid gear`".to_string(),
+        "this part as a mesh, which has the rest of the outline, too: option `format stl`".to_string(),
+        format!("a blank that ends with its teeth, without `{segment}`"),
+    ];
+    NotDone::new(NotDoneKind::FaceInexact, &solid.name, message).with(ways.into())
 }
 
 /// A surface of a space of whose sample no point is solved: for which reasons, with how many points for each.

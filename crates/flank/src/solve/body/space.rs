@@ -42,11 +42,17 @@ pub(crate) fn with_solids<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>
 /// If the surfaces of the space are no chain of neighbours from tip to tip, or bound no body.
 pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result<Space, Failure> {
     let jobs = jobs_of_spaces(job, solid);
-    let spaces = jobs.iter().map(|job| pieces(job, solid, session)).collect::<Result<Vec<_>, Failure>>()?;
+    let mut spaces: Vec<Vec<Piece<'_, '_>>> = Vec::new();
+    for job in &jobs {
+        spaces.push(pieces(job, solid, session, &spaces)?);
+    }
     let blank = ends::blank(solid, &spaces[0])?;
     let beside: Vec<Vec<Beside<'_, '_>>> = (0..spaces.len()).map(|k| beside(solid, &spaces, k)).collect();
-    let borders = |k: usize| Borders::new(solid, (&spaces[k], &beside[k]), &blank);
-    let borders: Vec<Borders<'_, '_>> = (0..spaces.len()).map(borders).collect::<Result<_, Failure>>()?;
+    let mut borders: Vec<Borders<'_, '_>> = Vec::new();
+    for (pieces, beside) in spaces.iter().zip(&beside) {
+        session.check()?;
+        borders.push(Borders::new(solid, (pieces, beside), &blank, borders.first())?);
+    }
     if spaces[0].len() < 2 && !borders[0].has_edge() {
         let message =
             format!("the space of `{}` is one surface: its body needs all of them from tip to tip", solid.name);
@@ -85,9 +91,18 @@ fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
     (0..solid.teeth).map(of_space).collect()
 }
 
-fn pieces<'j, 'g>(job: &'j Job<'g>, solid: &Solid, session: Session<'j>) -> Result<Vec<Piece<'j, 'g>>, Failure> {
+fn pieces<'j, 'g>(
+    job: &'j Job<'g>,
+    solid: &Solid,
+    session: Session<'j>,
+    before: &[Vec<Piece<'j, 'g>>],
+) -> Result<Vec<Piece<'j, 'g>>, Failure> {
     let arrangement = blank::arrangement(solid);
-    solid.space.iter().map(|at| Piece::new(job, (solid, &job.surfaces[*at], arrangement), session)).collect()
+    let piece = |(k, at): (usize, &usize)| {
+        let before: Vec<&Piece<'_, '_>> = before.iter().map(|pieces| &pieces[k]).collect();
+        Piece::new(job, (solid, &job.surfaces[*at], arrangement), session, &before)
+    };
+    solid.space.iter().enumerate().map(piece).collect()
 }
 
 /// What may lie beside a space: the same space one on, whichever way round they are counted, or the spaces that are counted before and behind it.

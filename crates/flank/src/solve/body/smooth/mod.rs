@@ -7,6 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use flank_export::{GearBody, GearRun, GearStrip, TurnedSegment, spline_deviation};
 use flank_solver::{Arrangement, Body, BodyPart, Chart, MassProperties, OutlineSegment};
 
+pub(crate) use side::BeyondEnds;
 use side::{Cut, sides};
 
 /// Rows and columns of a face that are tried: the spline through twice as many is nearer by sixteen.
@@ -31,13 +32,13 @@ struct Patch {
 /// A part of a gear as its faces are written, as near as `tolerance` (mm) where `MOST` rows and columns suffice.
 ///
 /// # Errors
-/// Why a part cannot be cut off.
+/// What of the outline keeps a part from being cut off.
 pub(crate) fn gear(
     name: &str,
     names: &[String],
     (body, part): (&Body, BodyPart),
     tolerance: f64,
-) -> Result<GearBody, String> {
+) -> Result<GearBody, BeyondEnds> {
     let strips = strips(names, body, part);
     let mut patches: Vec<&Patch> = Vec::new();
     let mut written = Vec::new();

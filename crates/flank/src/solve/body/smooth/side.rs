@@ -34,16 +34,24 @@ struct Bent<'b> {
     reach: f64,
 }
 
+/// A segment of the outline that a bent side does not reach: it lies beyond the ends of the spaces, as a shaft does that is longer than its teeth.
+#[derive(Clone, Debug)]
+pub(crate) struct BeyondEnds {
+    pub(crate) segment: String,
+    /// How far, mm.
+    pub(crate) by: f64,
+}
+
 /// The sides of a part, and how far they are off at the most, mm.
 ///
 /// # Errors
 /// If the rest of the outline goes beyond the ends of a bent side.
-pub(super) fn sides(body: &Body, cuts: &[Cut; 2], tolerance: f64) -> Result<([GearSide; 2], f64), String> {
+pub(super) fn sides(body: &Body, cuts: &[Cut; 2], tolerance: f64) -> Result<([GearSide; 2], f64), BeyondEnds> {
     let [first, last] = [side(body, &cuts[0], tolerance)?, side(body, &cuts[1], tolerance)?];
     Ok(([first.0, last.0], first.1.max(last.1)))
 }
 
-fn side(body: &Body, cut: &Cut, tolerance: f64) -> Result<(GearSide, f64), String> {
+fn side(body: &Body, cut: &Cut, tolerance: f64) -> Result<(GearSide, f64), BeyondEnds> {
     let ways = Chart::shares(cut.chart.counts()[1]).into_iter().map(|along| cut.place(body, along)[2]);
     let [low, high] = ways.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], way| [low.min(way), high.max(way)]);
     if high - low < FLAT {
@@ -142,17 +150,19 @@ impl<'b> Bent<'b> {
     }
 
     /// Points along a segment of the rest of the outline.
-    fn along(&self, segment: &OutlineSegment, count: usize) -> Result<Vec<[f64; 3]>, String> {
+    fn along(&self, segment: &OutlineSegment, count: usize) -> Result<Vec<[f64; 3]>, BeyondEnds> {
         let point = |place: [f64; 2]| {
-            let along = self.share(place).ok_or_else(|| {
-                format!(
-                    "`{}` of the outline lies beyond the ends of the spaces, and a part of the gear is cut off between these",
-                    segment.name
-                )
-            })?;
+            let along = self.share(place).ok_or_else(|| self.beyond(segment))?;
             let [_, _, way] = self.cut.place(self.body, along);
             Ok(self.body.arrangement().position([place[0], place[1], way]))
         };
         (0..count).map(|k| point(segment.at(k as f64 / (count - 1) as f64))).collect()
+    }
+
+    /// How far a segment lies beyond the ends of the spaces.
+    fn beyond(&self, segment: &OutlineSegment) -> BeyondEnds {
+        let blank = self.body.blank();
+        let by = [segment.from, segment.to].map(|place| blank.beyond_ends(place)).into_iter().fold(0.0, f64::max);
+        BeyondEnds { segment: segment.name.clone(), by }
     }
 }
