@@ -32,7 +32,8 @@ impl Levels {
         let size = low.abs().max(high.abs());
         let span = (high - low).max(if size > 0.0 { 1e-2 * size } else { 1.0 });
         let step = round_up(span / bands);
-        let ends = [(low / step).floor(), (high / step).ceil()];
+        // a value that is beyond a bound by rounding is at it
+        let ends = [(low / step + ROUNDING).floor(), (high / step - ROUNDING).ceil()];
         let ends = if ends[0] == ends[1] { [ends[0], ends[0] + 1.0] } else { ends };
         // rounding on both sides of a bound is one band about it
         let middle = (0.5 * (low + high) / step).round();
@@ -109,6 +110,8 @@ mod tests {
         assert_eq!((levels.band(-3.1), levels.band(12.7), levels.band(-0.1), levels.band(99.0)), (0, 8, 1, 8));
         assert_eq!((levels.ends_of(0), levels.ends_of(1)), ([f64::NEG_INFINITY, -2.0], [-2.0, 0.0]));
         assert_eq!(Levels::over(std::iter::empty(), BANDS), None);
+        let touching = Levels::over([-7e-12, 34.2].into_iter(), BANDS).expect("numbers");
+        assert!(!touching.is_signed() && touching.band(-7e-12) == 0, "{:?}", touching.bounds());
     }
 
     #[test]

@@ -54,7 +54,8 @@ pub(super) fn compose(drawing: &TraceDrawing, [width, height]: [f64; 2]) -> Figu
     let mut sheet = Sheet::default();
     figure::write_heading(&title, &drawing.header, width - 2.0 * MARGIN, &mut sheet);
     let area = Rect { left: MARGIN, top: 112.0, right: width - MARGIN, bottom: height - 88.0 };
-    let all = drawing.flanks.iter().flatten().flat_map(|chart| chart.deviations.iter().copied());
+    let seen = |chart: &TraceChart| chart.deviations.iter().copied().chain(chart.mean_ends()).collect::<Vec<f64>>();
+    let all = drawing.flanks.iter().flatten().flat_map(seen);
     let [_, up] = chart::bounds(all.chain([0.0]).map(|off| [0.0, off]));
     let middle = 0.5 * (up[0] + up[1]);
     let half = 0.55 * (up[1] - up[0]).max(LEAST);
@@ -79,6 +80,13 @@ pub(super) fn compose(drawing: &TraceDrawing, [width, height]: [f64; 2]) -> Figu
 }
 
 impl TraceChart {
+    /// The mean line at both ends of the trace, um.
+    fn mean_ends(&self) -> [f64; 2] {
+        let middle = 0.5 * (self.range[0] + self.range[1]);
+        let ends = [self.lengths.first(), self.lengths.last()].map(|length| length.copied().unwrap_or(middle));
+        ends.map(|length| self.mean[0] + self.mean[1] * (length - middle))
+    }
+
     fn draw(&self, rect: Rect, up: [f64; 2], sheet: &mut Sheet) {
         let room = rect.width();
         sheet.text(
@@ -99,12 +107,9 @@ impl TraceChart {
         chart.draw_lines(sheet);
         let zero = chart.place([0.0, 0.0])[1];
         sheet.line(&[[rect.left, zero], [rect.right, zero]], INK, 1.0);
-        let middle = 0.5 * (self.range[0] + self.range[1]);
-        let mean = across.map(|length| chart.place([length, self.mean[0] + self.mean[1] * (length - middle)]));
-        let inside = |[_, y]: &Place| (rect.top..=rect.bottom).contains(y);
-        if mean.iter().all(inside) {
-            sheet.dashes(&mean, [8.0, 5.0], palette::of_patch(1), 1.4);
-        }
+        let [first, last] = self.mean_ends();
+        let mean = [[across[0], first], [across[1], last]].map(|at| chart.place(at));
+        sheet.dashes(&mean, [8.0, 5.0], palette::of_patch(1), 1.4);
         let places = self.lengths.iter().zip(&self.deviations).map(|(length, off)| chart.place([*length, *off]));
         sheet.line(&places.collect::<Vec<Place>>(), palette::of_patch(3), 2.4);
         let across = one_line(&self.across);

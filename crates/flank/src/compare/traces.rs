@@ -13,7 +13,7 @@ use crate::solve::surface::problem;
 const POINTS: usize = 121;
 /// Boxes that a search for a point looks at where Newton's method does not reach it.
 const BOXES: u64 = 200;
-/// The share of the profile that is evaluated, from its root end on, and the share of the face that is left out at each end where it is no
+/// The share of the profile that is evaluated, from its root on, and the share of the face that is left out at each end where it is no
 /// more than a module, as ISO 1328-1:2013 has both unless something else is agreed.
 const PROFILE: f64 = 0.95;
 const FACE: f64 = 0.05;
@@ -55,7 +55,12 @@ pub(crate) fn traces<'j>(
         found.unzip()
     };
     let [low, high] = area.roll;
-    let profile = numbers(off(&profile, &roll), [low, low + PROFILE * (high - low)], POINTS);
+    // teeth of a ring have their roots outside
+    let is_ring = middle.first().is_some_and(|(_, [x, y, _], [u, v, _])| x * u + y * v < 0.0);
+    let evaluated = PROFILE * (high - low);
+    let range = if is_ring { [high - evaluated, high] } else { [low, low + evaluated] };
+    let profile = numbers(off(&profile, &roll), range, POINTS);
+    let profile = profile.map(|of| if is_ring { TraceNumbers { slope_um: -of.slope_um, ..of } } else { of });
     let [low, high] = area.face;
     let end = (FACE * (high - low)).min(module(job).unwrap_or(f64::INFINITY));
     let helix = numbers(off(&helix, &face), [low + end, high - end], POINTS);

@@ -29,12 +29,20 @@ pub(super) fn unchecked(findings: &Findings<'_, '_>) -> Unchecked {
         without_range(findings),
         without_requirement(findings),
     ];
+    let pair = match findings.job.contacts.is_empty() {
+        true => {
+            "Meshing with a mating gear, contact pattern, backlash, strength: flank deviation compares two surfaces."
+        }
+        false => {
+            "Contact under load: strength, deflection, load distribution; the members are rigid, and no oil lies between them."
+        }
+    };
     let always = [
         "Between the points of the grids nothing is solved; a finer grid in \u{201c}sample\u{201d} shows more.",
         "Collisions of tool, holder, machine, work and fixture, and what the tool cuts on its way in and out.",
         "Speeds, accelerations, order and duration of the motions; forces, deflection, heat, wear.",
         "Manufacturing tolerances, and errors of machine, tool and clamping.",
-        "Meshing with a mating gear, contact pattern, backlash, strength: flank deviation compares two surfaces.",
+        pair,
         "Whether the numbers in the spec are those of the real tool and machine.",
     ];
     Unchecked { of_job: of_job.into_iter().flatten().collect(), always: always.map(str::to_string).to_vec() }

@@ -103,11 +103,8 @@ export class Stage {
 
     /** Brings the eye so far away that these things fill the view, or the frames if there are none; `towards` is where it then stands, if it is to turn. */
     fit(objects, towards) {
-        this.scene.updateMatrixWorld(true);
-        const ofThings = objects.flatMap((object) => cornersOf(object));
-        const points = ofThings.length > 0 ? ofThings : this.frames.flatMap((frame) => cornersOf(frame));
-        if (points.length === 0) return;
-        const sphere = new THREE.Sphere().setFromPoints(points);
+        const sphere = this.ball(objects) ?? this.ball(this.frames);
+        if (!sphere) return;
         const way = towards ?? this.camera.position.clone().sub(this.controls.target);
         const half = (Math.min(this.camera.fov, this.camera.fov * this.camera.aspect) * Math.PI) / 360;
         const distance = Math.max(sphere.radius, 1e-6) / Math.sin(half);
@@ -118,6 +115,13 @@ export class Stage {
         this.camera.updateProjectionMatrix();
         this.controls.update();
         this.request();
+    }
+
+    /** The ball around objects; nothing of none. */
+    ball(objects) {
+        this.scene.updateMatrixWorld(true);
+        const points = objects.flatMap((object) => cornersOf(object));
+        return points.length > 0 ? new THREE.Sphere().setFromPoints(points) : null;
     }
 
     /** The first of the objects under a place of the canvas, pixels. */
