@@ -123,3 +123,19 @@ fn a_crowned_gear_has_its_crowning() {
         assert!(slope.abs() < 0.02 * crowning, "{slope}");
     }
 }
+
+/// The teeth of a ring have their roots outside: 95 % of the length of roll is counted from there, and a rise towards the tip is a fall over
+/// the length of roll.
+#[test]
+fn a_ring_is_evaluated_from_its_root() {
+    let found = traces("hobbing/skived_internal_gear.chain", &[]);
+    assert!(!found.is_empty());
+    for TraceNumbers { lengths_mm, evaluated_from_mm, evaluated_to_mm, slope_um, mean, .. } in
+        found.into_iter().map(|of| of.profile)
+    {
+        let [tip, root] = [lengths_mm[0], lengths_mm[lengths_mm.len() - 1]];
+        assert!((evaluated_to_mm - root).abs() < 1e-9, "{evaluated_to_mm} {root}");
+        assert!((evaluated_from_mm - root + 0.95 * (root - tip)).abs() < 1e-9, "{evaluated_from_mm}");
+        assert!(mean[1] != 0.0 && (slope_um + mean[1] * (root - tip)).abs() < 1e-12, "{slope_um} {mean:?}");
+    }
+}
