@@ -566,6 +566,7 @@ fn the_page_that_follows_keeps_what_is_seen_in_a_browser() {
     BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut address).expect("an address");
     let expected = json!({
         "other": text.replace("param teeth : count = 20", "param teeth : count = 21"),
+        "grown": text.replace("param teeth : count = 20", "param teeth : count = 90"),
         "wrong": text.replace("drive m.C = roll", "drive m.C = rol"),
         "code": "E0201",
         "empty": text.replacen("z: -10 mm .. 10 mm", "z: 500 mm .. 510 mm", 2),
@@ -574,7 +575,7 @@ fn the_page_that_follows_keeps_what_is_seen_in_a_browser() {
         "server": child.id(),
         "folder": folder,
     });
-    assert!(["other", "wrong", "empty", "gone"].iter().all(|other| expected[other] != json!(text)));
+    assert!(["other", "wrong", "empty", "grown", "gone"].iter().all(|other| expected[other] != json!(text)));
     let measured = node("following.mjs", &[address.trim(), spec.to_str().expect("a plain path")], &expected);
     let _ = child.kill();
     let _ = child.wait();

@@ -5,7 +5,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { chromium } from "playwright-core";
 
 const [address, spec] = process.argv.slice(2);
-const { other, wrong, code, empty, gone, jobs: [first, second], server, folder } = JSON.parse(readFileSync(0, "utf8"));
+const { other, wrong, code, empty, grown, gone, jobs: [first, second], server, folder } = JSON.parse(readFileSync(0, "utf8"));
 const browser = await chromium.launch({
     executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium",
     args: ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox"],
@@ -112,9 +112,19 @@ await says("picture", "5");
 await page.waitForFunction(() => !document.body.classList.contains("old"), { timeout: 60_000 });
 assert.equal(await job(), first);
 
+// a gear that outgrows its picture is fitted anew
+writeFileSync(spec, grown);
+await says("picture", "6");
+const offMiddle = await page.evaluate(() => {
+    const { flank } = document.querySelector("iframe.shown").contentWindow;
+    const { x, y } = flank.stage.ball(flank.visible.map((mesh) => mesh.object)).center.project(flank.stage.camera);
+    return Math.max(Math.abs(x), Math.abs(y));
+});
+assert(offMiddle < 1, `the work lies at ${offMiddle} of the way to the edge`);
+
 // a job that is no more is not replaced in silence
 writeFileSync(spec, gone);
-await says("picture", "6");
+await says("picture", "7");
 assert.match(await page.locator("#error").textContent(), new RegExp(`no job ${first} any more`));
 await page.screenshot({ path: `${folder}/gone.png` });
 
