@@ -148,6 +148,24 @@ fn a_gear_whose_spaces_differ() {
     check("specs/bodies/elliptical_gear_body.chain", &[("gear", 36)]);
 }
 
+/// An ellipse of equal axes is a circle: twenty spaces, each with a law of its own, leave the volume of the round gear, but for its bore.
+#[test]
+fn a_round_elliptical_gear_is_a_spur_gear() {
+    let volume = |spec: &str, set: &[(&str, &str)]| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let results = built(spec, set, folder.path());
+        assert!(results[0].is_complete(), "{:?}", results[0].not_done());
+        results[0].solids[0].volume_mm3
+    };
+    let elliptical = volume("specs/bodies/elliptical_gear_body.chain", &[("axis_ratio", "1"), ("teeth", "20")]);
+    let spur = volume("specs/bodies/spur_gear_body.chain", &[("profile_shift", "0"), ("teeth", "20")]);
+    let reference: f64 = 30.0;
+    let bores = std::f64::consts::PI * 20.0 * ((reference / 2.0).powi(2) - (reference / 4.0).powi(2));
+    let off = elliptical / (spur + bores) - 1.0;
+    // charts are within 1e-8 mm
+    assert!(off.abs() < 1e-9, "{off:e}: {elliptical} and {spur} mm³");
+}
+
 #[test]
 fn bevel_gears() {
     check("specs/bevel/octoid_gear.chain", &[("gear", 20)]);
