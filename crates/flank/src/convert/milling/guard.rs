@@ -1,12 +1,15 @@
 //! What the moves of a program must not cut into: the milled surface and what the cutter keeps clear of, in all spaces of the work.
 
-use flank_solver::{Guard, Obstacle, SpacePlace, Struck, ToolBody};
+use std::collections::HashMap;
+use std::f64::consts::TAU;
+
+use flank_solver::{Guard, Obstacle, PoseSeries, SpacePlace, Struck, ToolBody};
 use rayon::prelude::*;
 
 use super::Found;
 use super::block::Motion;
 use super::cutter::MillingCutter;
-use super::machine::FreeAxes;
+use super::machine::{FreeAxes, moved_by};
 use super::obstacles::{Guarded, body_of};
 use super::program::Move;
 use super::target::Target;
@@ -22,6 +25,13 @@ const STEP: f64 = 0.25;
 const MOST: usize = 100;
 /// What is less deep, mm, is not told.
 const SHALLOW: f64 = 0.01;
+/// Moves are alike whose cutters are nowhere farther apart than this, mm, ...
+const SAME: f64 = 1e-3;
+/// ... as points so far from the tip see it, mm, at these places of the way: uneven ones, so that whole turns are not taken for none.
+const REACH: f64 = 100.0;
+const PLACES: [f64; 5] = [0.0, 0.07, 0.31, 0.68, 1.0];
+/// Where moves begin is told by cells so wide, mm: wider than [`SAME`].
+const CELL: f64 = 0.1;
 
 /// Surfaces with the bodies that do not cut into them.
 pub(super) struct Guards<'f, 'j, 'g> {
@@ -45,6 +55,60 @@ pub(super) struct Hit {
     struck: Struck,
 }
 
+/// Of both that which is deeper; of the same the first.
+fn deeper(a: Hit, b: Hit) -> Hit {
+    let is_deeper = b.struck.distance < a.struck.distance - SHALLOW;
+    let is_as_deep = b.struck.distance < a.struck.distance + SHALLOW;
+    if is_deeper || is_as_deep && b.line < a.line { b } else { a }
+}
+
+/// Moves that bring the cutter the same way over the spaces of the work, but for a turn from space to space: the first of them, and how many.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Alike {
+    first: usize,
+    count: usize,
+}
+
+/// The moves that differ: what stands in all spaces is met alike by a move and by the same in another space. Spaces that stand in a row have ends,
+/// and no two moves over them are alike.
+fn alike(moves: &[&Move], places: &[SpacePlace], axes: &FreeAxes) -> Vec<Alike> {
+    let is_round = places.len() > 1 && places.iter().all(|place| place.shift == 0.0);
+    let mut found: Vec<Alike> = Vec::new();
+    let mut known: HashMap<[i64; 3], Vec<(usize, [[f64; 6]; PLACES.len()])>> = HashMap::new();
+    for (number, one) in moves.iter().enumerate() {
+        let fresh = Alike { first: number, count: 1 };
+        if !is_round {
+            found.push(fresh);
+            continue;
+        }
+        let way = in_first_space(&one.series(axes), places);
+        let cell = [0, 1, 2].map(|k| (way[0][k] / CELL).floor() as i64);
+        let beside = |by: usize| [by / 9, by / 3 % 3, by % 3].map(|by| by as i64 - 1);
+        let near = (0..27).map(beside).filter_map(|by| known.get(&[0, 1, 2].map(|k| cell[k] + by[k])));
+        let is_same = |other: &&(usize, [[f64; 6]; PLACES.len()])| {
+            way.iter().zip(&other.1).all(|(a, b)| moved_by(a, b, REACH) <= SAME)
+        };
+        let same = near.flatten().find(is_same).map(|(first, _)| *first);
+        match same {
+            Some(first) => found[first].count += 1,
+            None => {
+                known.entry(cell).or_default().push((found.len(), way));
+                found.push(fresh);
+            }
+        }
+    }
+    found
+}
+
+/// Poses of a way, turned back by as many spaces as bring its middle next to the first one.
+fn in_first_space(way: &PoseSeries, places: &[SpacePlace]) -> [[f64; 6]; PLACES.len()] {
+    let poses = PLACES.map(|share| way.at(share));
+    let [x, y, ..] = poses[PLACES.len() / 2];
+    let pitch = TAU / places.len() as f64;
+    let turn = -pitch * (y.atan2(x) / pitch).round();
+    poses.map(|pose| SpacePlace { turn, shift: 0.0 }.placed(&pose))
+}
+
 impl<'f, 'j, 'g> Guards<'f, 'j, 'g> {
     pub(super) fn new(target: &'f Target<'j, 'g>, found: &'f Found<'j, 'g>, promised: f64) -> Guards<'f, 'j, 'g> {
         let MillingCutter { cutting } = &found.cutter;
@@ -62,49 +126,62 @@ impl<'f, 'j, 'g> Guards<'f, 'j, 'g> {
         }
     }
 
-    /// Of all surfaces; the milled one is the last.
-    fn all(&self) -> Vec<Guard<'_>> {
-        let alone = || vec![SpacePlace::default()];
-        let of = |of: &'f Guarded<'j>| {
-            let places = if of.is_fixture { alone() } else { self.places.clone() };
-            Guard::new(&of.kept.obstacle, &of.body, places)
-        };
-        let milled = Guard::new(&self.milled, &self.part.1, self.places.clone());
-        self.guarded.iter().map(of).chain([milled]).collect()
+    /// Those that are looked at along moves of a kind: of a surface that stands in all spaces, or of one that stands alone. The milled one is the last.
+    fn of(&self, motion: Motion, is_alone: bool) -> Vec<(usize, Guard<'_>)> {
+        let kept = self.guarded.iter().enumerate().filter(|(_, of)| of.is_fixture == is_alone);
+        let places = || if is_alone { vec![SpacePlace::default()] } else { self.places.clone() };
+        let kept = kept.map(|(number, of)| (number, Guard::new(&of.kept.obstacle, &of.body, places())));
+        // what blocks leave on the milled surface is measured
+        let has_milled = motion == Motion::Rapid && !is_alone;
+        let milled = has_milled.then(|| (self.guarded.len(), Guard::new(&self.milled, &self.part.1, places())));
+        kept.chain(milled).collect()
     }
 
     /// The move of a kind that cuts in deepest, and how many do.
     pub(super) fn worst(&self, moves: &[Move], motion: Motion, axes: &FreeAxes) -> Option<(Hit, usize)> {
-        let mut guards = self.all();
-        if motion == Motion::Straight {
-            // what blocks leave on the milled surface is measured
-            guards.pop();
-        }
-        let (guards, allowed) = (&guards, self.allowed);
-        let close = CLOSE[usize::from(motion == Motion::Straight)];
+        let some: Vec<&Move> = moves.iter().filter(|one| one.motion == motion).collect();
+        let all: Vec<Alike> = (0..some.len()).map(|first| Alike { first, count: 1 }).collect();
+        let turned = alike(&some, &self.places, axes);
+        let kinds = [(false, turned), (true, all)]
+            .map(|(is_alone, looked_at)| self.worst_of(&some, &looked_at, &self.of(motion, is_alone), axes));
+        let count = kinds.iter().flatten().map(|(_, count)| count).sum();
+        let worst = kinds.into_iter().flatten().map(|(hit, _)| hit).reduce(deeper)?;
+        Some((worst, count))
+    }
+
+    fn worst_of(
+        &self,
+        moves: &[&Move],
+        looked_at: &[Alike],
+        guards: &[(usize, Guard<'_>)],
+        axes: &FreeAxes,
+    ) -> Option<(Hit, usize)> {
+        let allowed = self.allowed;
         let of_move = |one: &Move| -> Option<Hit> {
+            let close = CLOSE[usize::from(one.motion == Motion::Straight)];
             let parts = one.parts(axes, TURNED);
             let hits = parts.iter().enumerate().flat_map(|(part, one)| {
                 let series = one.series(axes);
-                let hits = guards.iter().enumerate().filter_map(move |(guard, of)| {
+                let hits = guards.iter().filter_map(move |(guard, of)| {
                     let struck = of.struck(&series, -allowed, close)?;
-                    Some(Hit { line: one.line, guard, part, struck })
+                    Some(Hit { line: one.line, guard: *guard, part, struck })
                 });
                 hits.collect::<Vec<Hit>>()
             });
             hits.min_by_key(|hit| hit.part)
         };
-        let some: Vec<&Move> = moves.iter().filter(|one| one.motion == motion).collect();
-        let hits: Vec<(usize, Hit)> =
-            some.par_iter().enumerate().filter_map(|(k, one)| Some((k, of_move(one)?))).collect();
-        let depth = |(number, hit): &(usize, Hit)| {
-            let part = &some[*number].parts(axes, TURNED)[hit.part];
-            Hit { struck: guards[hit.guard].deepest(&part.series(axes), hit.struck, STEP), ..*hit }
+        if guards.is_empty() {
+            return None;
+        }
+        let hits: Vec<(Alike, Hit)> =
+            looked_at.par_iter().filter_map(|alike| Some((*alike, of_move(moves[alike.first])?))).collect();
+        let depth = |(alike, hit): &(Alike, Hit)| {
+            let part = &moves[alike.first].parts(axes, TURNED)[hit.part];
+            let (_, guard) = guards.iter().find(|(number, _)| *number == hit.guard).expect("it is one of them");
+            Hit { struck: guard.deepest(&part.series(axes), hit.struck, STEP), ..*hit }
         };
         let depths: Vec<Hit> = hits[..hits.len().min(MOST)].par_iter().map(depth).collect();
-        let worst =
-            depths.into_iter().reduce(|a, b| if b.struck.distance < a.struck.distance - SHALLOW { b } else { a })?;
-        Some((worst, hits.len()))
+        Some((depths.into_iter().reduce(deeper)?, hits.iter().map(|(alike, _)| alike.count).sum()))
     }
 
     /// That a move cuts in.
