@@ -12,6 +12,8 @@ mod special;
 mod support;
 #[path = "mill/verified.rs"]
 mod verified;
+#[path = "mill/whole.rs"]
+mod whole;
 
 use std::path::Path;
 use std::process::Command;
