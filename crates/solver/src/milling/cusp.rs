@@ -54,7 +54,10 @@ pub fn cusp(
     let sign = if at_low <= 0.0 && at_high >= 0.0 { 1.0 } else { -1.0 };
     (at_low, at_high) = (sign * at_low, sign * at_high);
     if !(at_low <= 0.0 && at_high >= 0.0) {
-        return None;
+        // one pass digs in beside the other: it is lower all the way, and leaves most at one end
+        let ends = shares.map(|share| heights(share).map(|[a, b]| Cusp { share, height: a.min(b) }));
+        let is_known = at_low.is_finite() && at_high.is_finite();
+        return ends.into_iter().flatten().max_by(|a, b| a.height.total_cmp(&b.height)).filter(|_| is_known);
     }
     let mut side = 0;
     let (mut share, mut height) = (low, 0.0);
