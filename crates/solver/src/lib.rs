@@ -62,7 +62,7 @@ pub use equations::system::System;
 pub use equations::tolerance::TOLERANCE;
 pub use milling::axes::MillAxes;
 pub use milling::clear::{Clear, ClearProof};
-pub use milling::cusp::{Cusp, cusp, left_by_block, peak};
+pub use milling::cusp::{Cusp, cusp, left_by_block, lowest_beside, peak};
 pub use milling::distance::{Nearest, Obstacle, ToolBody};
 pub use milling::frame::{SurfaceFrame, SurfaceFrames};
 pub use milling::guard::{Guard, SpacePlace, Struck};

@@ -12,6 +12,9 @@ const CLOSE: f64 = 1e-15;
 const ENDS: f64 = 0.05;
 /// Steps of a search for an extreme by sections.
 const SECTIONS: u32 = 60;
+/// Steps of a search beside a pass, and by how much they get shorter.
+const STEPS_BESIDE: u32 = 6;
+const NEARER: f64 = 0.25;
 
 /// The ridge between two passes at a place along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,7 +54,10 @@ pub fn cusp(
     let sign = if at_low <= 0.0 && at_high >= 0.0 { 1.0 } else { -1.0 };
     (at_low, at_high) = (sign * at_low, sign * at_high);
     if !(at_low <= 0.0 && at_high >= 0.0) {
-        return None;
+        // one pass digs in beside the other: it is lower all the way, and leaves most at one end
+        let ends = shares.map(|share| heights(share).map(|[a, b]| Cusp { share, height: a.min(b) }));
+        let is_known = at_low.is_finite() && at_high.is_finite();
+        return ends.into_iter().flatten().max_by(|a, b| a.height.total_cmp(&b.height)).filter(|_| is_known);
     }
     let mut side = 0;
     let (mut share, mut height) = (low, 0.0);
@@ -108,6 +114,35 @@ pub fn left_by_block(
     };
     let found = peak([from, to], value)?;
     Some(Cusp { share: found.0, height: stock + sign * found.1 })
+}
+
+/// The lowest that a block passes over the line `across` the surface, with the share of that line: from one share on, in steps that begin with `apart`.
+///
+/// A block that goes straight where its pass bends within the surface lies beside it, and is deepest there. Heights across a pass are nearly
+/// those of a parabola, from three of which the next is found.
+pub fn lowest_beside(
+    across: &PoseSeries,
+    block: &PoseSeries,
+    (start, mut apart): (f64, f64),
+    near: f64,
+    cutter: &Cutter,
+) -> Option<Cusp> {
+    let height = |share: f64| lowest(block, cutter, &across.at(share), near).map(|found| found.height);
+    let mut best = Cusp { share: start, height: height(start)? };
+    for _ in 0..STEPS_BESIDE {
+        let [before, after] = [-apart, apart].map(|by| height(best.share + by));
+        let by = match (before, after) {
+            (Some(before), Some(after)) => {
+                let (slope, bend) = (0.5 * (after - before), before - 2.0 * best.height + after);
+                if bend > 0.0 { (-slope / bend).clamp(-1.0, 1.0) } else { -slope.signum() }
+            }
+            _ => 0.0,
+        };
+        let found = height(best.share + by * apart).map(|height| Cusp { share: best.share + by * apart, height });
+        best = found.filter(|found| found.height < best.height).unwrap_or(best);
+        apart *= if by.abs() < 1.0 { NEARER } else { 1.0 };
+    }
+    Some(best)
 }
 
 /// The largest value of a function with one peak between two ends, and where: by golden sections, then the parabola through the last three.

@@ -186,26 +186,35 @@ fn of_surface(
     has: impl Fn([Jet; 2]) -> bool,
 ) -> Option<Lowest> {
     let at = |u: f64, h: f64| seen(&way.moving(u), line, h);
+    let is_entered = |found: &Lowest| {
+        let seen = at(found.share, found.height);
+        off(seen).h < 0.0 && has(seen)
+    };
+    let end = |end: f64| at_end(way, line, end, &off).filter(is_entered);
     let from = |near: f64| {
-        let within = newton([near, 0.0], |u, h| {
+        let found = newton([near, 0.0], |u, h| {
             let jet = off(at(u, h));
             ([jet.v, jet.u], [[jet.u, jet.h], [jet.uu, jet.uh]])
-        });
-        let found = within.filter(|found| (0.0..=1.0).contains(&found.share)).or_else(|| {
+        })?;
+        match (0.0..=1.0).contains(&found.share) {
+            true => Some(found).filter(is_entered),
             // the way ends before
-            let end = if within.map_or(near, |found| found.share) < 0.5 { 0.0 } else { 1.0 };
-            at_end(way, line, end, &off)
-        });
-        found.filter(|found| {
-            let seen = at(found.share, found.height);
-            off(seen).h < 0.0 && has(seen)
-        })
+            false => end(if found.share < 0.5 { 0.0 } else { 1.0 }),
+        }
     };
-    // on a way that is long against the cutter, where it comes nearest to the point
-    from(near).or_else(|| {
+    // within the way it may also be highest, and beside an end it may be lower
+    let is_low = |found: &Lowest| {
+        let jet = off(at(found.share, found.height));
+        if found.is_within { jet.uu > 0.0 } else { jet.u * (1.0 - 2.0 * found.share) >= 0.0 }
+    };
+    let first = from(near);
+    first.filter(is_low).or_else(|| {
+        // on a way that is long against the cutter, where it comes nearest to the point
         let off = |share: &f64| off(at(*share, 0.0)).v;
         let places = (0..STARTS).map(|k| f64::from(k) / f64::from(STARTS - 1));
-        from(places.min_by(|a, b| off(a).total_cmp(&off(b)))?)
+        let again = places.min_by(|a, b| off(a).total_cmp(&off(b))).and_then(from);
+        let all = [first, again, end(0.0), end(1.0)];
+        all.into_iter().flatten().min_by(|a, b| a.height.total_cmp(&b.height))
     })
 }
 

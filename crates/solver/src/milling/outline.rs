@@ -17,6 +17,8 @@ const STEEP: f64 = 6.0;
 const LENGTHENED: f64 = 4.0;
 /// ... or by this share of the way to the axis.
 const NEAR_AXIS: f64 = 0.8;
+/// Two pieces that meet under a smaller angle than this, radians, have no corner: rounding.
+const CORNER: f64 = 1e-6;
 /// Points of a piece that are looked at.
 const LOOKED_AT: usize = 9;
 
@@ -56,6 +58,20 @@ pub enum NoOutline {
 }
 
 impl OutlinePiece {
+    /// Its ends from below upwards, each with the angle of its normal from the direction away from the spindle.
+    fn ends(&self) -> [([f64; 2], f64); 2] {
+        match *self {
+            OutlinePiece::Arc { center, radius, between } => {
+                between.map(|angle| ([center[0] + radius * angle.sin(), center[1] - radius * angle.cos()], angle))
+            }
+            OutlinePiece::Line { from, to } => {
+                // the body lies on the left
+                let angle = (to[1] - from[1]).atan2(to[0] - from[0]);
+                [(from, angle), (to, angle)]
+            }
+        }
+    }
+
     /// Of a surface of a tool, whose frame has z out of the spindle: its position in one parameter (an edge) or two, with their ranges;
     /// `normal` out of the body, of a surface.
     ///
@@ -250,6 +266,22 @@ impl CutterArc {
 }
 
 impl Cutter {
+    /// The same with an edge in each corner in which two of its pieces meet.
+    pub fn with_edges(mut self) -> Cutter {
+        let ends: Vec<[([f64; 2], f64); 2]> = self.pieces.iter().map(OutlinePiece::ends).collect();
+        let corner = |[_, (end, before)]: &[([f64; 2], f64); 2], [(start, after), _]: &[([f64; 2], f64); 2]| {
+            let is_one = (end[0] - start[0]).abs().max((end[1] - start[1]).abs()) <= SAME;
+            (is_one && after - before > CORNER).then_some(OutlinePiece::Arc {
+                center: *end,
+                radius: 0.0,
+                between: [*before, *after],
+            })
+        };
+        let edges = ends.iter().flat_map(|one| ends.iter().filter_map(move |other| corner(one, other)));
+        self.pieces.extend(edges.collect::<Vec<_>>());
+        self
+    }
+
     /// Its arcs and edges: what can touch a surface in a point.
     fn arcs(&self) -> impl Iterator<Item = CutterArc> + '_ {
         self.pieces.iter().filter_map(|piece| CutterArc::of_piece(piece).ok())
@@ -337,6 +369,19 @@ mod tests {
         assert_eq!(side, Ok(OutlinePiece::Line { from: [3.0, 0.0], to: [3.0, 8.0] }));
         let bow: Vec<[f64; 2]> = (0..9).map(f64::from).map(|k| [k * k * k * 0.01, k]).collect();
         assert_eq!(piece(&bow, [1.0, 0.0]), Err(NoOutline::NotAnArc));
+    }
+
+    #[test]
+    fn a_corner_of_an_outline_is_an_edge() {
+        let [bottom, side] =
+            [[[0.0, 0.0], [2.0, 0.0]], [[2.0, 0.0], [2.0, 9.0]]].map(|[from, to]| OutlinePiece::Line { from, to });
+        let edge = OutlinePiece::Arc { center: [2.0, 0.0], radius: 0.0, between: [0.0, FRAC_PI_2] };
+        assert_eq!(Cutter { pieces: vec![bottom, side] }.with_edges().pieces, [bottom, side, edge]);
+        // a rounded corner has none
+        let round = OutlinePiece::Arc { center: [1.5, 0.5], radius: 0.5, between: [0.0, FRAC_PI_2] };
+        let [bottom, side] =
+            [[[0.0, 0.0], [1.5, 0.0]], [[2.0, 0.5], [2.0, 9.0]]].map(|[from, to]| OutlinePiece::Line { from, to });
+        assert_eq!(Cutter { pieces: vec![bottom, round, side] }.with_edges().pieces, [bottom, round, side]);
     }
 
     #[test]

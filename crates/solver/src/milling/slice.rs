@@ -74,7 +74,8 @@ impl Slice {
                 // the outline runs round the centre on its outer side
                 let faces = cross(from_center(low), [out, up]) >= 0.0 && cross([out, up], from_center(high)) >= 0.0;
                 let away = out.hypot(up);
-                faces.then(|| [center[0] + radius * out / away, center[1] + radius * up / away])
+                // from the centre itself no point of the arc is nearest
+                (faces && away > 0.0).then(|| [center[0] + radius * out / away, center[1] + radius * up / away])
             }
             None => {
                 let along = [high[0] - low[0], high[1] - low[1]];

@@ -17,7 +17,7 @@ impl MillingCutter {
     /// # Errors
     /// If a surface of it is no surface of revolution, or its outline is neither a line nor an arc.
     pub(super) fn of_milling(job: &Job<'_>, milling: &Milling<'_>) -> Result<MillingCutter, Failure> {
-        let cutting = outline(job, &milling.cutter)?;
+        let cutting = outline(job, &milling.cutter)?.with_edges();
         if cutting.angles().is_none() {
             let name = &milling.cutter_name;
             let message = format!(

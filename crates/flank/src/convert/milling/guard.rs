@@ -69,12 +69,15 @@ struct Alike {
     count: usize,
 }
 
+/// The cutter at [`PLACES`] of a way.
+type Places = [[f64; 6]; PLACES.len()];
+
 /// The moves that differ: what stands in all spaces is met alike by a move and by the same in another space. Spaces that stand in a row have ends,
 /// and no two moves over them are alike.
 fn alike(moves: &[&Move], places: &[SpacePlace], axes: &FreeAxes) -> Vec<Alike> {
     let is_round = places.len() > 1 && places.iter().all(|place| place.shift == 0.0);
     let mut found: Vec<Alike> = Vec::new();
-    let mut known: HashMap<[i64; 3], Vec<(usize, [[f64; 6]; PLACES.len()])>> = HashMap::new();
+    let mut known: HashMap<[i64; 3], Vec<(usize, Places)>> = HashMap::new();
     for (number, one) in moves.iter().enumerate() {
         let fresh = Alike { first: number, count: 1 };
         if !is_round {
@@ -85,9 +88,7 @@ fn alike(moves: &[&Move], places: &[SpacePlace], axes: &FreeAxes) -> Vec<Alike> 
         let cell = [0, 1, 2].map(|k| (way[0][k] / CELL).floor() as i64);
         let beside = |by: usize| [by / 9, by / 3 % 3, by % 3].map(|by| by as i64 - 1);
         let near = (0..27).map(beside).filter_map(|by| known.get(&[0, 1, 2].map(|k| cell[k] + by[k])));
-        let is_same = |other: &&(usize, [[f64; 6]; PLACES.len()])| {
-            way.iter().zip(&other.1).all(|(a, b)| moved_by(a, b, REACH) <= SAME)
-        };
+        let is_same = |other: &&(usize, Places)| way.iter().zip(&other.1).all(|(a, b)| moved_by(a, b, REACH) <= SAME);
         let same = near.flatten().find(is_same).map(|(first, _)| *first);
         match same {
             Some(first) => found[first].count += 1,
@@ -101,7 +102,7 @@ fn alike(moves: &[&Move], places: &[SpacePlace], axes: &FreeAxes) -> Vec<Alike> 
 }
 
 /// Poses of a way, turned back by as many spaces as bring its middle next to the first one.
-fn in_first_space(way: &PoseSeries, places: &[SpacePlace]) -> [[f64; 6]; PLACES.len()] {
+fn in_first_space(way: &PoseSeries, places: &[SpacePlace]) -> Places {
     let poses = PLACES.map(|share| way.at(share));
     let [x, y, ..] = poses[PLACES.len() / 2];
     let pitch = TAU / places.len() as f64;

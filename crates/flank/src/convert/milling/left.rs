@@ -12,6 +12,9 @@ use super::target::{Fields, Target};
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::solve;
 
+/// What is less deep, mm, is rounding.
+const DEEP: f64 = 1e-6;
+
 /// Heights at the middles of equal cells, on no pass in particular.
 pub(super) struct LeftMap {
     pub(super) counts: [usize; 2],
@@ -95,6 +98,21 @@ impl LeftMap {
         );
         let way = "set passes closer together, or take a cutter with a longer cutting arc".to_string();
         (untouched > 0).then(|| NotDone::new(NotDoneKind::HeightUnknown, target.name(), message).with(vec![way]))
+    }
+
+    /// That a pass cuts too deep with another part of the cutter than that which touches.
+    pub(super) fn too_deep(&self, target: &Target<'_, '_>) -> Option<NotDone> {
+        let (deepest, way) = self.deepest().filter(|(left, _)| left.height < -DEEP)?;
+        let message = format!(
+            "{} cuts {:.4} mm into {} at {}",
+            target.milling.cutter_name,
+            -deepest.height,
+            target.name(),
+            target.place(deepest.shares)
+        );
+        let why = format!("pass {} does, away from where the cutter touches", way + 1);
+        let way = "lean the cutter otherwise with `lead` or `tilt`, or take a smaller or shorter one".to_string();
+        Some(NotDone::new(NotDoneKind::TooDeep, target.name(), message).with(vec![why, way]))
     }
 
     fn values(&self, of: impl Fn(&LeftOver) -> f64) -> Values {

@@ -193,6 +193,9 @@ pub(crate) fn worked<'j, 'g>(
     let map = LeftMap::of_cutter(&target, &fields, &swept, [request.rows as usize, request.columns as usize]);
     session.check()?;
     result.map = Some(map.result(&target));
+    // a pass with the side is as near as it comes; what cuts too deep beside its contact is told of that
+    let is_told = result.side.is_some() || result.not_done.iter().any(|known| known.kind == NotDoneKind::TooDeep);
+    result.not_done.extend(map.too_deep(&target).filter(|_| !is_told));
     let spaces = Spaces::of_job(job, milling);
     Ok(Worked { target, result, found: Some(Found { cutter, fields, milled, swept, map, guarded, spaces }) })
 }

@@ -1,7 +1,7 @@
 //! How many passes, how many blocks, and what these leave.
 
 use flank_chain_dsl::{BlockLength, PassSpacing};
-use flank_solver::{Cusp, PoseSeries, cusp, left_by_block, peak};
+use flank_solver::{Cusp, PoseSeries, cusp, left_by_block, lowest_beside, peak};
 use rayon::prelude::*;
 
 use super::cutter::MillingCutter;
@@ -230,6 +230,7 @@ impl Planner<'_, '_, '_> {
     /// The most and the least that straight blocks leave on some passes.
     fn left_by_blocks(&self, passes: &[f64], along: &[f64], which: &[usize]) -> Result<[LeftAt; 2], NotDone> {
         let (fields, cutter, axes, stock) = (self.fields, &self.cutter.cutting, self.axes, self.stock());
+        let between = 1.0 / (passes.len() - 1) as f64;
         let of_pass = |number: &usize| -> Result<[LeftAt; 2], Lost> {
             let share = passes[*number];
             let (surface, path) = (fields.surface.pass(share), fields.of_pass(*number).pass(share));
@@ -245,6 +246,11 @@ impl Planner<'_, '_, '_> {
                     found.ok_or_else(|| Lost { shares: [share, pair[0]], from_pole: axes.map(from_pole) })?;
                 let left = LeftAt { shares: [share, at], height: height - stock };
                 ends = [higher(ends[0], left), lower(ends[1], left)];
+                let middle = 0.5 * (pair[0] + pair[1]);
+                let beside = lowest_beside(&fields.surface.across(middle), block, (share, 0.5 * between), 0.5, cutter);
+                let beside = beside.filter(|beside| (0.0..=1.0).contains(&beside.share));
+                let left = |beside: Cusp| LeftAt { shares: [beside.share, middle], height: beside.height - stock };
+                ends[1] = beside.map_or(ends[1], |beside| lower(ends[1], left(beside)));
             }
             Ok(ends)
         };
