@@ -654,3 +654,85 @@ fn a_rounding_that_no_surface_is_named_for_is_a_gap() {
     let told = Asked::new(BODIES, "internal", &[]).refused();
     assert!(told.contains("`left` and `root`") && told.contains("leave a gap of "), "{told}");
 }
+
+/// How far the middles of those sides of triangles that have both ends on a cylinder lie within it, mm.
+fn off_cylinder(mesh: &[[[f32; 3]; 3]], rho: f64) -> f64 {
+    let sides = mesh.iter().flat_map(|of| (0..3).map(move |k| [of[k], of[(k + 1) % 3]].map(|at| at.map(f64::from))));
+    // single precision
+    let on = sides.filter(|ends| ends.iter().all(|[x, y, _]| (x.hypot(*y) - rho).abs() < 1e-6 * rho));
+    let off = on.map(|[a, b]| rho - (0.5 * (a[0] + b[0])).hypot(0.5 * (a[1] + b[1])));
+    off.fold(0.0, f64::max)
+}
+
+/// However far teeth wind about the axis: tip and bore of a worm and of a steep pinion are as near to their cylinders as is told, that is no farther
+/// than is asked for, and the area nears the exact one.
+#[test]
+fn meshes_of_threads_are_as_near_as_is_said() {
+    let worm = ("specs/bodies/worm_and_wheel_body.chain", "worm_and_wheel_body", "worm_and_wheel_body.worm");
+    let steep = ("specs/bodies/helical_gear_body.chain", "helical_gear_body", "helical_gear_body");
+    let cases: [(_, &[(&str, &str)]); 3] = [
+        (worm, &[]),
+        (worm, &[("starts", "2")]),
+        (steep, &[("teeth", "6"), ("helix_angle", "60 deg"), ("face_width", "60 mm")]),
+    ];
+    for ((spec, job, file), set) in cases {
+        let mut before = f64::INFINITY;
+        for deviation in [0.04, 0.01] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let result = Asked { deviation, ..Asked::new(spec, job, set) }.built(folder.path());
+            let body = &result.solids[0];
+            let mesh = triangles(&folder.path().join(format!("{file}.stl")));
+            let inner = mesh.iter().flatten().map(|[x, y, _]| f64::from(*x).hypot(f64::from(*y)));
+            let [tip, bore] = [0.5 * body.gauges.tip_diameter_mm.expect("round"), inner.fold(f64::INFINITY, f64::min)];
+            let off = off_cylinder(&mesh, tip).max(off_cylinder(&mesh, bore));
+            let told = body.mesh.deviation_mm;
+            // 1e-5: single precision
+            assert!(told <= deviation && off <= told + 1e-5, "{job} {set:?} {deviation}: {off} {told}");
+            let area = (body.mesh.area_mm2 / body.area_mm2 - 1.0).abs();
+            // the triangles of the ground wind with the thread
+            assert!(area < before && area < 5e-3, "{job} {set:?} {deviation}: area off by {area}");
+            before = area;
+            assert_eq!(euler_characteristic(&mesh), 0, "{job} {set:?} {deviation}");
+        }
+    }
+}
+
+/// Parts are cut off from each other by the same triangles on both sides: a part has its share of what the whole mesh encloses.
+#[test]
+fn parts_fit_their_copies() {
+    for (spec, job) in [("specs/bodies/helical_gear_body.chain", "helical_gear_body"), (DIAGONAL, "diagonal_gear_body")]
+    {
+        let of = |part: SolidPart| Asked { part, deviation: 0.03, ..Asked::new(spec, job, &[]) }.only().0;
+        let body = of(SolidPart::Gear);
+        let exact = body.volume_mm3 / f64::from(body.teeth);
+        for part in [SolidPart::Tooth, SolidPart::Space] {
+            let volume = of(part).mesh.volume_mm3;
+            // flanks, fillets and root are chords within 0.03 mm; sides that do not fit made 3e-3 to 8e-3 of it
+            assert!((volume / exact - 1.0).abs() < 1.5e-3, "{job} {part:?}: {volume} {exact}");
+        }
+    }
+}
+
+const DIAGONAL: &str = "specs/bodies/diagonal_gear_body.chain";
+
+/// A mesh that nobody has room for is refused before it is made, with a deviation that is possible.
+#[test]
+fn a_mesh_that_is_too_large_is_refused_beforehand() {
+    let path = repository("specs/bodies/spur_gear_body.chain");
+    let folder = tempfile::tempdir().expect("a folder");
+    let request = SolidRequest {
+        jobs: JobSelection { project: Project::open(&path, Arc::new(Disk)), job: None, set: Vec::new() },
+        part: SolidPart::Gear,
+        out: folder.path().to_path_buf(),
+        format: vec![MeshFormat::Stl],
+        step: None,
+        deviation: 1e-7,
+        density: 7850.0,
+        ball: None,
+        evaluator: EvaluatorOptions::default(),
+    };
+    let refused = solid(&request, &Unwatched, &mut |_| ()).expect_err("it would take gigabytes").to_string();
+    assert!(refused.starts_with("the mesh of `gear` within 1.0e-4 um would have"), "{refused}");
+    assert!(refused.ends_with("um is possible with option `deviation`"), "{refused}");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
+}
