@@ -715,6 +715,72 @@ fn parts_fit_their_copies() {
 
 const DIAGONAL: &str = "specs/bodies/diagonal_gear_body.chain";
 
+/// A gear each of whose spaces is a little deeper than the last.
+const DEEPENING: &str = r#"
+use "spur_gear_body.chain"
+
+machine indexing extends rack_generating {
+    axis S     : linear
+    axis index : rotary
+    frame indexed in table = rotate_z(-index)
+    couple X = reference_radius + shift - S
+}
+
+job deepening extends spur_gear_body {
+    param space : count in 0 .. 1000 = 0
+    machine m = indexing(reference_radius: reference_radius, shift: profile_shift * module)
+    drive m.C = phi
+    drive m.index = 360 deg / teeth * space
+    drive m.S = 0.05 mm * space
+    surface flank_plus, fillet_plus   in m.indexed = envelope(r.flank_plus, r.fillet_plus, over: phi)
+    surface flank_minus, fillet_minus in m.indexed = envelope(r.flank_minus, r.fillet_minus, over: phi)
+    surface root in m.indexed = envelope(r.tip, over: phi)
+    solid gear in m.indexed = turned(blank, spaces: teeth, each: space, of: [
+        flank_minus, fillet_minus, root, fillet_plus, flank_plus
+    ])
+    expect nothing
+}
+"#;
+
+/// A part of a gear whose spaces differ is no share of it: its STEP file says no volume, and its mesh is cut off by planes.
+#[test]
+fn parts_of_gears_whose_spaces_differ() {
+    let path = repository("specs/bodies/deepening.chain");
+    let project = Project::open(&path, Arc::new(Buffers::over(Arc::new(Disk)).with(&path, DEEPENING)));
+    for (part, has_volume) in [(SolidPart::Gear, true), (SolidPart::Space, false), (SolidPart::Tooth, false)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let set =
+            [("teeth", "12"), ("profile_shift", "0.5")].map(|(name, value)| (name.to_string(), value.to_string()));
+        let request = SolidRequest {
+            jobs: JobSelection { project: project.clone(), job: Some("deepening".to_string()), set: set.to_vec() },
+            part,
+            out: folder.path().to_path_buf(),
+            format: vec![MeshFormat::Stl],
+            step: Some(1e-3),
+            deviation: DEVIATION,
+            density: 7850.0,
+            ball: None,
+            evaluator: EvaluatorOptions::default(),
+        };
+        solid(&request, &Unwatched, &mut |result| assert!(result.is_complete(), "{result}")).expect("a right spec");
+        let step = std::fs::read_to_string(folder.path().join("deepening.step")).expect("written");
+        assert_eq!(step.contains("VOLUME_MEASURE"), has_volume, "{part:?}");
+        if part == SolidPart::Space {
+            let mesh = triangles(&folder.path().join("deepening.stl"));
+            let way = |[x, y, _]: [f32; 3]| f64::from(y).atan2(f64::from(x));
+            let ways = || mesh.iter().flatten().map(|at| way(*at));
+            for end in [ways().fold(f64::INFINITY, f64::min), ways().fold(f64::NEG_INFINITY, f64::max)] {
+                // corners of the part at the tip and at the bore lie on one plane through the axis: single precision
+                let on = mesh.iter().flatten().filter(|at| (way(**at) - end).abs() < 1e-6);
+                let radii: Vec<f64> = on.map(|[x, y, _]| f64::from(*x).hypot(f64::from(*y))).collect();
+                let [low, high] =
+                    [radii.iter().copied().fold(f64::INFINITY, f64::min), radii.iter().copied().fold(0.0, f64::max)];
+                assert!(high - low > 4.0, "{end}: {low} .. {high}");
+            }
+        }
+    }
+}
+
 /// A mesh that nobody has room for is refused before it is made, with a deviation that is possible.
 #[test]
 fn a_mesh_that_is_too_large_is_refused_beforehand() {
