@@ -468,8 +468,13 @@ fn what_bounds_no_body_is_told_with_its_number() {
         told.contains("`left` ends are beyond the ranges of their unknowns, `v`") && told.contains(" by 2.0000 mm"),
         "{told}"
     );
-    let told = with("[left, left_fillet, root, right_fillet]").refused();
-    assert!(told.contains("`right_fillet` does not reach `tip`") && told.contains("`theta` by "), "{told}");
+    let told = with("[left, left_fillet, root, right_fillet]").not_done();
+    let message = &told.message;
+    assert!(message.contains("`right_fillet` does not reach `tip`") && message.contains("`theta` by "), "{told}");
+    assert!(told.details[0].starts_with("name in `of:` the surface between `right_fillet` and the tip"), "{told}");
+    // the bore lies 0.4 mm outside the tip
+    let told = Asked::new(BODIES, "helical", &[("helix_angle", "0 deg"), ("bore", "40 mm")]).refused();
+    assert!(told.contains("through `tip` of its outline, and leave it by `bore`"), "{told}");
 }
 
 /// Balls between two pins of a ring, by the distance of their centres, which stay clear of the ground that the pins stand out of: the program's
@@ -714,6 +719,27 @@ fn parts_fit_their_copies() {
 }
 
 const DIAGONAL: &str = "specs/bodies/diagonal_gear_body.chain";
+
+/// Where the halves of a lobe end far beside its top, no body is made of them; a little beside it the top is found all the same.
+#[test]
+fn lobes_that_end_beside_their_tops_are_told() {
+    let gerotor = |place: &str| {
+        let folder = tempfile::tempdir().expect("a folder");
+        Asked::new("specs/cycloidal/gerotor.chain", "gerotor", &[("p.place", place)]).built(folder.path())
+    };
+    let result = gerotor("180 deg");
+    let told = &result.not_done()[0];
+    // the ring's radius plus the eccentricity less the pin's radius is the top, 43.7 mm across; the ground is twice the eccentricity below
+    assert!(told.message.contains("end in an edge 5.7000 mm below their top"), "{told}");
+    assert!(told.message.contains("about the axis beside it") && told.details[0].contains("end on the top"), "{told}");
+    let result = gerotor("1 deg");
+    let gauges = &result.solids[0].gauges;
+    for (found, exact) in [(gauges.tip_diameter_mm, 43.7), (gauges.root_diameter_mm, 32.3)] {
+        let off = (found.expect("round") - exact).abs();
+        // a search that stops where depths are equal to rounding
+        assert!(off < 1e-6, "{off}");
+    }
+}
 
 /// A gear each of whose spaces is a little deeper than the last.
 const DEEPENING: &str = r#"

@@ -169,6 +169,11 @@ impl<'j, 'g> Piece<'j, 'g> {
         (0..made.unknowns.len()).filter(move |k| is_motion(k) == (whose == EndsOf::Motions))
     }
 
+    /// Whether an unknown is one of the tool, and no motion.
+    pub(crate) fn is_of_tool(&self, unknown: usize) -> bool {
+        self.of(EndsOf::Tool).any(|other| other == unknown)
+    }
+
     /// An unknown, and how far along the space a point lies.
     pub(crate) fn across(&self, unknown: usize, blank: &Blank) -> [Expr<'g>; 2] {
         [self.surface.surface.unknowns[unknown], blank.share_of(self.section())]
@@ -225,8 +230,9 @@ impl<'j, 'g> Piece<'j, 'g> {
 
     /// The same of the unknown that tells rows apart, if it is one of the tool.
     pub(crate) fn ends_of_rows(&self, blank: &Blank, along: &[f64]) -> Vec<EndLine> {
-        let of_tool = |unknown: &usize| self.of(EndsOf::Tool).any(|other| other == *unknown);
-        let Some(unknown) = self.across_tool(blank).filter(of_tool) else { return Vec::new() };
+        let Some(unknown) = self.across_tool(blank).filter(|unknown| self.is_of_tool(*unknown)) else {
+            return Vec::new();
+        };
         let Range { low, high } = self.bound().ranges()[unknown];
         let line = |value: f64| {
             let points = self.on_line((unknown, value), blank, along);
