@@ -741,6 +741,24 @@ fn lobes_that_end_beside_their_tops_are_told() {
     }
 }
 
+/// Lobes that the blank is lower than are turned down: they have lands, and the volume lies between those of the ground and of the whole lobes.
+#[test]
+fn round_lobes_can_be_turned_down() {
+    let lower = Some(("ring_radius + eccentricity - pin_radius", "ring_radius + eccentricity - pin_radius - 1 mm"));
+    let of =
+        |changed| Asked { changed, ..Asked::new("specs/cycloidal/cycloidal_disc.chain", "cycloidal_disc", &[]) }.only();
+    let ((whole, _), (turned, mesh)) = (of(None), of(lower));
+    assert_eq!(euler_characteristic(&mesh), 0);
+    let tip = turned.gauges.tip_diameter_mm.expect("round");
+    // the ring's radius, the eccentricity, less the pin's radius and what is turned off
+    assert!((tip - 2.0 * 55.5).abs() < 1e-6 && turned.gauges.edge_below_tip_mm.is_none(), "{tip}");
+    // the bore is half as large as the blank: 0.5 mm smaller
+    let bore = PI * (28.25_f64.powi(2) - 27.75_f64.powi(2)) * 12.0;
+    let off = whole.volume_mm3 + bore - turned.volume_mm3;
+    let ring = PI * (56.5_f64.powi(2) - 55.5_f64.powi(2)) * 12.0;
+    assert!(off > 0.05 * ring && off < ring, "{off} of {ring}");
+}
+
 /// A gear each of whose spaces is a little deeper than the last.
 const DEEPENING: &str = r#"
 use "spur_gear_body.chain"

@@ -237,8 +237,17 @@ fn edge<'j, 'g>(solid: &Solid, pieces: &[Piece<'j, 'g>; 2], blank: &Blank) -> Op
     let pitch = last.known.iter().map(arc).fold(0.0, f64::max) * last.arrangement.pitch(solid.teeth);
     let gap = last.known.iter().map(near).fold(f64::INFINITY, f64::min);
     let may = gap < NEAR * pitch;
-    let shared = may.then(|| ends_in_one_line([last, first], blank)).flatten()?;
+    let shared =
+        may.then(|| ends_in_one_line([last, first], blank)).flatten().filter(|shared| is_left(shared, last, blank))?;
     Some(Joint { pieces: pieces.clone(), shared })
+}
+
+/// Whether the blank reaches as far as the line in which a surface ends: where that lies above the tip all along, the tip cuts it off and teeth have
+/// lands.
+fn is_left(shared: &Shared<'_, '_>, last: &Piece<'_, '_>, blank: &Blank) -> bool {
+    let Shared::Ends([line, _]) = shared else { return true };
+    let above = |point: &[f64; 3]| blank.above_tip(last.arrangement.section(*point));
+    positions(&last.on_line(*line, blank, &ALONG)).iter().any(|point| above(point) < SAME_LINE)
 }
 
 /// Neighbours whose common line is not found.

@@ -187,7 +187,7 @@ fn at_tip(
         let [z, rho] = piece.arrangement.section(point.position);
         (z - middle[0]).hypot(rho - middle[1])
     };
-    let points = piece.solved(piece.section(), (&targets, [1, shares.len()]), far);
+    let points = piece.solved_line(piece.section(), &targets, (unknown, far));
     let tip = format!(
         "`{}` of the outline, where the first surface of a space begins and the last one ends,",
         blank.bounds()[1].name
