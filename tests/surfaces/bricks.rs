@@ -308,3 +308,29 @@ fn what_cannot_be_cut_is_told_with_its_reason() {
     assert!(files.is_empty() && told.message.contains("the blank of `gear` reaches its axis"), "{told}");
     assert!(told.details[0].starts_with("a bore, however small") && told.kind == NotDoneKind::NoBricks, "{told}");
 }
+
+/// Bricks of the second order are held to their own map: the straight edges of these are good, but the curved ones turn back at corners. The first
+/// order with the same numbers is told as a way out.
+#[test]
+fn bricks_that_curved_edges_fold_are_refused() {
+    let asked = |order: ElementOrder| {
+        let (result, files) =
+            Asked { order, elements: [1, 12, 6], ..Asked::new("specs/bodies/spur_gear_body.chain", "") }.meshed();
+        (result, files.is_empty())
+    };
+    let (result, is_empty) = asked(ElementOrder::Second);
+    let told = &result.not_done()[0];
+    assert!(is_empty && told.message.contains("nearly so: their least scaled Jacobian is -"), "{told}");
+    assert!(told.details.iter().any(|way| way.starts_with("bricks of the first order")), "{told}");
+    let (result, is_empty) = asked(ElementOrder::First);
+    assert!(result.is_complete() && !is_empty, "{result}");
+}
+
+/// Bricks that are another body are refused: too few along a thread.
+#[test]
+fn bricks_of_another_volume_are_refused() {
+    let asked = Asked { elements: [8, 3, 6], ..Asked::new("specs/bodies/worm_and_wheel_body.chain", "") };
+    let result = asked.results().remove(0);
+    let told = result.not_done().iter().find(|told| told.of.as_deref() == Some("worm")).expect("it is refused");
+    assert!(told.message.contains("their volume is -17.6 % off"), "{told}");
+}

@@ -469,8 +469,13 @@ fn what_bounds_no_body_is_told_with_its_number() {
         told.contains("`left` ends are beyond the ranges of their unknowns, `v`") && told.contains(" by 2.0000 mm"),
         "{told}"
     );
-    let told = with("[left, left_fillet, root, right_fillet]").refused();
-    assert!(told.contains("`right_fillet` does not reach `tip`") && told.contains("`theta` by "), "{told}");
+    let told = with("[left, left_fillet, root, right_fillet]").not_done();
+    let message = &told.message;
+    assert!(message.contains("`right_fillet` does not reach `tip`") && message.contains("`theta` by "), "{told}");
+    assert!(told.details[0].starts_with("name in `of:` the surface between `right_fillet` and the tip"), "{told}");
+    // the bore lies 0.4 mm outside the tip
+    let told = Asked::new(BODIES, "helical", &[("helix_angle", "0 deg"), ("bore", "40 mm")]).refused();
+    assert!(told.contains("through `tip` of its outline, and leave it by `bore`"), "{told}");
 }
 
 /// Balls between two pins of a ring, by the distance of their centres, which stay clear of the ground that the pins stand out of: the program's
@@ -687,4 +692,191 @@ fn ranges_that_end_too_soon_are_told() {
 fn a_rounding_that_no_surface_is_named_for_is_a_gap() {
     let told = Asked::new(BODIES, "internal", &[]).refused();
     assert!(told.contains("`left` and `root`") && told.contains("leave a gap of "), "{told}");
+}
+
+/// How far the middles of those sides of triangles that have both ends on a cylinder lie within it, mm.
+fn off_cylinder(mesh: &[[[f32; 3]; 3]], rho: f64) -> f64 {
+    let sides = mesh.iter().flat_map(|of| (0..3).map(move |k| [of[k], of[(k + 1) % 3]].map(|at| at.map(f64::from))));
+    // single precision
+    let on = sides.filter(|ends| ends.iter().all(|[x, y, _]| (x.hypot(*y) - rho).abs() < 1e-6 * rho));
+    let off = on.map(|[a, b]| rho - (0.5 * (a[0] + b[0])).hypot(0.5 * (a[1] + b[1])));
+    off.fold(0.0, f64::max)
+}
+
+/// However far teeth wind about the axis: tip and bore of a worm and of a steep pinion are as near to their cylinders as is told, that is no farther
+/// than is asked for, and the area nears the exact one.
+#[test]
+fn meshes_of_threads_are_as_near_as_is_said() {
+    let worm = ("specs/bodies/worm_and_wheel_body.chain", "worm_and_wheel_body", "worm_and_wheel_body.worm");
+    let steep = ("specs/bodies/helical_gear_body.chain", "helical_gear_body", "helical_gear_body");
+    let cases: [(_, &[(&str, &str)]); 3] = [
+        (worm, &[]),
+        (worm, &[("starts", "2")]),
+        (steep, &[("teeth", "6"), ("helix_angle", "60 deg"), ("face_width", "60 mm")]),
+    ];
+    for ((spec, job, file), set) in cases {
+        let mut before = f64::INFINITY;
+        for deviation in [0.04, 0.01] {
+            let folder = tempfile::tempdir().expect("a folder");
+            let result = Asked { deviation, ..Asked::new(spec, job, set) }.built(folder.path());
+            let body = &result.solids[0];
+            let mesh = triangles(&folder.path().join(format!("{file}.stl")));
+            let inner = mesh.iter().flatten().map(|[x, y, _]| f64::from(*x).hypot(f64::from(*y)));
+            let [tip, bore] = [0.5 * body.gauges.tip_diameter_mm.expect("round"), inner.fold(f64::INFINITY, f64::min)];
+            let off = off_cylinder(&mesh, tip).max(off_cylinder(&mesh, bore));
+            let told = body.mesh.deviation_mm;
+            // 1e-5: single precision
+            assert!(told <= deviation && off <= told + 1e-5, "{job} {set:?} {deviation}: {off} {told}");
+            let area = (body.mesh.area_mm2 / body.area_mm2 - 1.0).abs();
+            // the triangles of the ground wind with the thread
+            assert!(area < before && area < 5e-3, "{job} {set:?} {deviation}: area off by {area}");
+            before = area;
+            assert_eq!(euler_characteristic(&mesh), 0, "{job} {set:?} {deviation}");
+        }
+    }
+}
+
+/// Parts are cut off from each other by the same triangles on both sides: a part has its share of what the whole mesh encloses.
+#[test]
+fn parts_fit_their_copies() {
+    for (spec, job) in [("specs/bodies/helical_gear_body.chain", "helical_gear_body"), (DIAGONAL, "diagonal_gear_body")]
+    {
+        let of = |part: SolidPart| Asked { part, deviation: 0.03, ..Asked::new(spec, job, &[]) }.only().0;
+        let body = of(SolidPart::Gear);
+        let exact = body.volume_mm3 / f64::from(body.teeth);
+        for part in [SolidPart::Tooth, SolidPart::Space] {
+            let volume = of(part).mesh.volume_mm3;
+            // flanks, fillets and root are chords within 0.03 mm; sides that do not fit made 3e-3 to 8e-3 of it
+            assert!((volume / exact - 1.0).abs() < 1.5e-3, "{job} {part:?}: {volume} {exact}");
+        }
+    }
+}
+
+const DIAGONAL: &str = "specs/bodies/diagonal_gear_body.chain";
+
+/// Where the halves of a lobe end far beside its top, no body is made of them; a little beside it the top is found all the same.
+#[test]
+fn lobes_that_end_beside_their_tops_are_told() {
+    let gerotor = |place: &str| {
+        let folder = tempfile::tempdir().expect("a folder");
+        Asked::new("specs/cycloidal/gerotor.chain", "gerotor", &[("p.place", place)]).built(folder.path())
+    };
+    let result = gerotor("180 deg");
+    let told = &result.not_done()[0];
+    // the ring's radius plus the eccentricity less the pin's radius is the top, 43.7 mm across; the ground is twice the eccentricity below
+    assert!(told.message.contains("end in an edge 5.7000 mm below their top"), "{told}");
+    assert!(told.message.contains("about the axis beside it") && told.details[0].contains("end on the top"), "{told}");
+    let result = gerotor("1 deg");
+    let gauges = &result.solids[0].gauges;
+    for (found, exact) in [(gauges.tip_diameter_mm, 43.7), (gauges.root_diameter_mm, 32.3)] {
+        let off = (found.expect("round") - exact).abs();
+        // a search that stops where depths are equal to rounding
+        assert!(off < 1e-6, "{off}");
+    }
+}
+
+/// Lobes that the blank is lower than are turned down: they have lands, and the volume lies between those of the ground and of the whole lobes.
+#[test]
+fn round_lobes_can_be_turned_down() {
+    let lower = Some(("ring_radius + eccentricity - pin_radius", "ring_radius + eccentricity - pin_radius - 1 mm"));
+    let of =
+        |changed| Asked { changed, ..Asked::new("specs/cycloidal/cycloidal_disc.chain", "cycloidal_disc", &[]) }.only();
+    let ((whole, _), (turned, mesh)) = (of(None), of(lower));
+    assert_eq!(euler_characteristic(&mesh), 0);
+    let tip = turned.gauges.tip_diameter_mm.expect("round");
+    // the ring's radius, the eccentricity, less the pin's radius and what is turned off
+    assert!((tip - 2.0 * 55.5).abs() < 1e-6 && turned.gauges.edge_below_tip_mm.is_none(), "{tip}");
+    // the bore is half as large as the blank: 0.5 mm smaller
+    let bore = PI * (28.25_f64.powi(2) - 27.75_f64.powi(2)) * 12.0;
+    let off = whole.volume_mm3 + bore - turned.volume_mm3;
+    let ring = PI * (56.5_f64.powi(2) - 55.5_f64.powi(2)) * 12.0;
+    assert!(off > 0.05 * ring && off < ring, "{off} of {ring}");
+}
+
+/// A gear each of whose spaces is a little deeper than the last.
+const DEEPENING: &str = r#"
+use "spur_gear_body.chain"
+
+machine indexing extends rack_generating {
+    axis S     : linear
+    axis index : rotary
+    frame indexed in table = rotate_z(-index)
+    couple X = reference_radius + shift - S
+}
+
+job deepening extends spur_gear_body {
+    param space : count in 0 .. 1000 = 0
+    machine m = indexing(reference_radius: reference_radius, shift: profile_shift * module)
+    drive m.C = phi
+    drive m.index = 360 deg / teeth * space
+    drive m.S = 0.05 mm * space
+    surface flank_plus, fillet_plus   in m.indexed = envelope(r.flank_plus, r.fillet_plus, over: phi)
+    surface flank_minus, fillet_minus in m.indexed = envelope(r.flank_minus, r.fillet_minus, over: phi)
+    surface root in m.indexed = envelope(r.tip, over: phi)
+    solid gear in m.indexed = turned(blank, spaces: teeth, each: space, of: [
+        flank_minus, fillet_minus, root, fillet_plus, flank_plus
+    ])
+    expect nothing
+}
+"#;
+
+/// A part of a gear whose spaces differ is no share of it: its STEP file says no volume, and its mesh is cut off by planes.
+#[test]
+fn parts_of_gears_whose_spaces_differ() {
+    let path = repository("specs/bodies/deepening.chain");
+    let project = Project::open(&path, Arc::new(Buffers::over(Arc::new(Disk)).with(&path, DEEPENING)));
+    for (part, has_volume) in [(SolidPart::Gear, true), (SolidPart::Space, false), (SolidPart::Tooth, false)] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let set =
+            [("teeth", "12"), ("profile_shift", "0.5")].map(|(name, value)| (name.to_string(), value.to_string()));
+        let request = SolidRequest {
+            jobs: JobSelection { project: project.clone(), job: Some("deepening".to_string()), set: set.to_vec() },
+            part,
+            out: folder.path().to_path_buf(),
+            format: vec![MeshFormat::Stl],
+            step: Some(1e-3),
+            deviation: DEVIATION,
+            density: 7850.0,
+            ball: None,
+            evaluator: EvaluatorOptions::default(),
+        };
+        solid(&request, &Unwatched, &mut |result| assert!(result.is_complete(), "{result}")).expect("a right spec");
+        let step = std::fs::read_to_string(folder.path().join("deepening.step")).expect("written");
+        assert_eq!(step.contains("VOLUME_MEASURE"), has_volume, "{part:?}");
+        if part == SolidPart::Space {
+            let mesh = triangles(&folder.path().join("deepening.stl"));
+            let way = |[x, y, _]: [f32; 3]| f64::from(y).atan2(f64::from(x));
+            let ways = || mesh.iter().flatten().map(|at| way(*at));
+            for end in [ways().fold(f64::INFINITY, f64::min), ways().fold(f64::NEG_INFINITY, f64::max)] {
+                // corners of the part at the tip and at the bore lie on one plane through the axis: single precision
+                let on = mesh.iter().flatten().filter(|at| (way(**at) - end).abs() < 1e-6);
+                let radii: Vec<f64> = on.map(|[x, y, _]| f64::from(*x).hypot(f64::from(*y))).collect();
+                let [low, high] =
+                    [radii.iter().copied().fold(f64::INFINITY, f64::min), radii.iter().copied().fold(0.0, f64::max)];
+                assert!(high - low > 4.0, "{end}: {low} .. {high}");
+            }
+        }
+    }
+}
+
+/// A mesh that nobody has room for is refused before it is made, with a deviation that is possible.
+#[test]
+fn a_mesh_that_is_too_large_is_refused_beforehand() {
+    let path = repository("specs/bodies/spur_gear_body.chain");
+    let folder = tempfile::tempdir().expect("a folder");
+    let request = SolidRequest {
+        jobs: JobSelection { project: Project::open(&path, Arc::new(Disk)), job: None, set: Vec::new() },
+        part: SolidPart::Gear,
+        out: folder.path().to_path_buf(),
+        format: vec![MeshFormat::Stl],
+        step: None,
+        deviation: 1e-7,
+        density: 7850.0,
+        ball: None,
+        evaluator: EvaluatorOptions::default(),
+    };
+    let refused = solid(&request, &Unwatched, &mut |_| ()).expect_err("it would take gigabytes").to_string();
+    assert!(refused.starts_with("the mesh of `gear` within 1.0e-4 um would have"), "{refused}");
+    assert!(refused.ends_with("um is possible with option `deviation`"), "{refused}");
+    assert_eq!(std::fs::read_dir(folder.path()).expect("a folder").count(), 0);
 }

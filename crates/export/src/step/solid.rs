@@ -90,8 +90,8 @@ pub struct GearBody {
     pub rest: Vec<TurnedSegment>,
     /// How far the faces are off the exact surfaces at the most, mm.
     pub deviation: f64,
-    /// mm³
-    pub volume: f64,
+    /// mm³, where it is known.
+    pub volume: Option<f64>,
     /// mm², where it is known.
     pub area: Option<f64>,
     /// mm, where it is known.
@@ -165,13 +165,8 @@ pub fn write_step_assembly(header: &Header, bodies: &[PlacedBody<'_>], out: &mut
 
 /// What a body is and how far its faces are off, in one line.
 fn told(body: &GearBody) -> String {
-    format!(
-        "`{}`: {}, off by at most {:.2e} um; volume {:.4} mm3",
-        body.name,
-        body.about,
-        1e3 * body.deviation,
-        body.volume
-    )
+    let volume = body.volume.map(|volume| format!("; volume {volume:.4} mm3")).unwrap_or_default();
+    format!("`{}`: {}, off by at most {:.2e} um{volume}", body.name, body.about, 1e3 * body.deviation)
 }
 
 /// A product that is a body.
@@ -226,7 +221,7 @@ impl DataSection<'_> {
         let measure = |name: &str, kind: &str, value: f64, unit: usize| {
             format!("MEASURE_REPRESENTATION_ITEM('{name} measure',{kind}_MEASURE({}),#{unit})", real(value))
         };
-        let volume = Some(measure("volume", "VOLUME", body.volume, cube));
+        let volume = body.volume.map(|volume| measure("volume", "VOLUME", volume, cube));
         let area = body.area.map(|area| measure("surface area", "AREA", area, square));
         let centre = body.centre.map(|centre| {
             let [x, y, z] = centre.map(real);

@@ -75,6 +75,12 @@ pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String 
     format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()
 }
 
+/// A value with its unit, as short as it was given, or else with four decimals.
+pub(crate) fn told(dimension: Dimension, value: f64) -> String {
+    let [given, rounded] = [as_given(dimension, value), text(dimension, value, 4)];
+    if given.len() <= rounded.len() { given } else { rounded }
+}
+
 /// A value as it was given, with its unit: the shortest text that is the same value.
 pub(crate) fn as_given(dimension: Dimension, value: f64) -> String {
     let shown = if is_angle(dimension) { degrees(value) } else { value };

@@ -74,6 +74,11 @@ impl Blank {
         cells
     }
 
+    /// How far a place `[z, rho]` lies beyond the tip, mm.
+    pub fn above_tip(&self, place: [f64; 2]) -> f64 {
+        -self.bounds()[1].bound().height(place)
+    }
+
     /// How far a place `[z, rho]` lies from begin to end, as a share.
     pub fn share([begin, _, end]: [&OutlineSegment; 3], place: [f64; 2]) -> f64 {
         let [a, b] = [begin, end].map(|segment| segment.bound().height(place));

@@ -3,6 +3,7 @@
 use crate::solid::arrangement::{Arrangement, Polar};
 use crate::solid::blank::Blank;
 use crate::solid::chart::Chart;
+use crate::solid::section::{Fineness, Layout};
 
 /// Rows of each chart, and columns, at which a body is looked at before it is one.
 const LOOKS: usize = 9;
@@ -12,6 +13,8 @@ const FINE_LOOKS: usize = 65;
 const LAND_ROWS: usize = 17;
 /// How far a space may reach beyond its blank, and how thin a wall is none, mm: rounding of solved points.
 const ON_BLANK: f64 = 1e-6;
+/// How much of a section may fold over where an edge lies a little beside the top, as a share: what a mesh of 10 um leaves out of a small gear.
+const FOLD: f64 = 0.01;
 /// Places nearer to the axis lie on it, mm: rounding of arcs that end there.
 pub(crate) const ON_AXIS: f64 = 1e-9;
 
@@ -52,6 +55,15 @@ pub enum BodyFault {
     Crossed {
         /// The charts that cross each other, in the order that they were given in.
         charts: [usize; 2],
+        /// Where, `[z, rho]`, mm.
+        place: [f64; 2],
+    },
+    /// The edge in which teeth end lies so far beside their top that what is between folds over it.
+    BesideTop {
+        /// How far below the top it lies, mm.
+        below: f64,
+        /// How far beside it, about the axis in radians, or along the bar in mm.
+        beside: f64,
         /// Where, `[z, rho]`, mm.
         place: [f64; 2],
     },
@@ -150,6 +162,7 @@ impl Body {
         for tooth in 0..self.spaces.len() {
             let [own, next] = self.tooth_lines(tooth, &across, &shares);
             self.check_tips([&own, &next], &shares)?;
+            self.check_folds([&own, &next])?;
             self.check_crossings(&own)?;
             for (line, next) in own.iter().zip(&next) {
                 let last = line.len() - 1;
@@ -207,6 +220,55 @@ impl Body {
             }
         }
         Ok(())
+    }
+
+    /// Where teeth end in an edge, each section of a tooth has to be laid out without folds: a part of it that lies above the edge, beside it,
+    /// folds over it.
+    fn check_folds(&self, [own, next]: [&[Vec<Polar>]; 2]) -> Result<(), BodyFault> {
+        if !self.has_edge {
+            return Ok(());
+        }
+        let cells = LOOKS - 1;
+        let fineness =
+            Fineness { charts: vec![cells; self.charts().len()], tooth: cells, rim: 1, along: cells, arc: 1 };
+        let layout = Layout::new(&fineness);
+        let (half, below) = (LOOKS / 2, self.blank.below(cells));
+        let shares = layout.shares(&layout.top([&own[half], &next[half]]), self.arrangement);
+        for j in 0..LOOKS {
+            let (line, tip, down) = (&own[j], own[j][own[j].len() - 1], below[j]);
+            let down = [down[0] - tip[0], down[1] - tip[1]];
+            let depth = |place: Polar| (place[0] - tip[0]) * down[0] + (place[1] - tip[1]) * down[1];
+            let places = layout.places([line, &next[j]], below[j], &shares);
+            let area = |[a, b, c]: [usize; 3]| {
+                let [a, b, c] = [a, b, c].map(|node| [places[node][2], depth(places[node])]);
+                (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+            };
+            // of a cell what turns back, by the better of its diagonals, and all of it
+            let of_cell = |[a, b, c, d]: &[usize; 4]| {
+                let halves = [[[*a, *b, *c], [*a, *c, *d]], [[*a, *b, *d], [*b, *c, *d]]];
+                let back = halves.map(|of| of.iter().map(|corners| -area(*corners).min(0.0)).sum::<f64>());
+                [back[0].min(back[1]), halves[0].iter().map(|corners| area(*corners)).sum()]
+            };
+            let sums = layout.cells().iter().map(of_cell).fold([0.0; 2], |sum, of| [sum[0] + of[0], sum[1] + of[1]]);
+            if sums[0] > FOLD * sums[1] {
+                return Err(self.beside_top([line, &next[j]], j));
+            }
+        }
+        Ok(())
+    }
+
+    /// How far the edge behind a space lies beside the top of the tooth, in a section.
+    fn beside_top(&self, [line, next]: [&[Polar]; 2], section: usize) -> BodyFault {
+        let edge = line[line.len() - 1];
+        let tip = self.blank.tip(section as f64 / (LOOKS - 1) as f64);
+        let off = |place: &Polar| (place[0] - tip[0]).hypot(place[1] - tip[1]);
+        let tooth = line[line.len() / 2..].iter().chain(&next[..next.len() / 2]);
+        let top = tooth.min_by(|a, b| off(a).total_cmp(&off(b))).copied().unwrap_or(edge);
+        BodyFault::BesideTop {
+            below: off(&edge) - off(&top),
+            beside: (top[2] - edge[2]).abs(),
+            place: [edge[0], edge[1]],
+        }
     }
 
     fn check_tips(&self, [own, next]: [&[Vec<Polar>]; 2], shares: &[f64]) -> Result<(), BodyFault> {

@@ -6,6 +6,8 @@ use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
 use crate::solid::chart::Chart;
 
+/// Places across a chart between which its least and its largest depth are looked for.
+const LOOKS: usize = 64;
 /// Halvings of a search along a flank: as many as a number has binary digits.
 const HALVINGS: usize = 60;
 /// Steps of Newton's method; from the middle of a flank five are enough.
@@ -76,9 +78,9 @@ impl Body {
 
     /// How far the edges in which teeth end lie below the tip of the blank, half-way along, mm; nothing where teeth have lands.
     pub fn edge_below_tip(&self) -> Option<f64> {
-        let [z, rho, _] = self.arrangement.place(self.charts()[0].at([0.0, 0.5]));
         let tip = self.blank().tip(0.5);
-        self.has_edge().then(|| (z - tip[0]).hypot(rho - tip[1]))
+        let depth = |place: [f64; 2]| self.depth([place[0], place[1], 0.0]);
+        self.has_edge().then(|| (self.tip_and_root()[0] - depth(tip)).abs())
     }
 
     /// By what the depth of teeth is measured, of a place `[z, rho, …]`.
@@ -95,14 +97,35 @@ impl Body {
     /// The distance from the axis (of a face gear the z, of a rack the x) of the tip and of the deepest point of the space, half-way along, mm;
     /// the extremes of all spaces where these differ.
     pub fn tip_and_root(&self) -> [f64; 2] {
-        let shares: Vec<f64> = (0..=64).map(|k| f64::from(k) / 64.0).collect();
         let extremes: [fn(f64, f64) -> f64; 2] = [f64::min, f64::max];
         let [deeper, higher] = if self.is_external() { extremes } else { [extremes[1], extremes[0]] };
-        let points = self.spaces.iter().map(|charts| charts.iter().flat_map(|chart| chart.lattice(&shares, &[0.5])));
-        let depths =
-            points.map(|points| points.map(|point| self.depth(self.arrangement.place(point))).collect::<Vec<f64>>());
-        let ends = depths.map(|depths| [depths[0], depths.into_iter().reduce(deeper).unwrap_or_default()]);
+        let ends = self.spaces.iter().map(|charts| {
+            let of =
+                |extreme: fn(f64, f64) -> f64| charts.iter().map(|chart| self.extreme(chart, extreme)).reduce(extreme);
+            // an edge may lie a little beside the top
+            let top = if self.has_edge() { of(higher) } else { None };
+            let first = self.depth(self.arrangement.place(charts[0].at([0.0, 0.5])));
+            [top.unwrap_or(first), of(deeper).unwrap_or_default()]
+        });
         ends.reduce(|a, b| [higher(a[0], b[0]), deeper(a[1], b[1])]).unwrap_or_default()
+    }
+
+    /// The least or the largest depth of a chart, half-way along.
+    fn extreme(&self, chart: &Chart, extreme: fn(f64, f64) -> f64) -> f64 {
+        let shares: Vec<f64> = (0..=LOOKS).map(|k| k as f64 / LOOKS as f64).collect();
+        let depth = |point: [f64; 3]| self.depth(self.arrangement.place(point));
+        let depths: Vec<f64> = chart.lattice(&shares, &[0.5]).into_iter().map(depth).collect();
+        let most = depths.iter().copied().reduce(extreme).unwrap_or_default();
+        let at = depths.iter().position(|depth| *depth == most).unwrap_or_default();
+        // between the neighbours of the place found, by thirds
+        let (mut low, mut high) = (shares[at.saturating_sub(1)], shares[(at + 1).min(LOOKS)]);
+        let at = |share: f64| depth(chart.at([share, 0.5]));
+        for _ in 0..HALVINGS {
+            let [a, b] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+            let [by_a, by_b] = [at(a), at(b)];
+            if extreme(by_a, by_b) == by_a { high = b } else { low = a }
+        }
+        extreme(most, at(0.5 * (low + high)))
     }
 
     /// The distance from the axis (of a face gear the z) at which both flanks end towards the root, half-way along, mm.

@@ -99,11 +99,6 @@ impl Layout {
         node >= self.in_rim(0, 0)
     }
 
-    /// Whether a node lies on the rest of the outline.
-    pub(crate) fn is_below(&self, node: usize) -> bool {
-        node >= self.in_rim(self.rim, 0)
-    }
-
     /// Of the points along the top of the lower block the share of the way from its one side to the other, half by length and half
     /// evenly.
     pub(crate) fn shares(&self, top: &[Polar], arrangement: Arrangement) -> Vec<f64> {
@@ -142,6 +137,21 @@ impl Layout {
             );
         }
         places
+    }
+
+    /// Brings the middle of the tooth, in which spaces are cut off from each other, to the way of the middle of its tip, from there down to
+    /// the rest of the outline.
+    pub(crate) fn straighten(&self, places: &mut [Polar]) {
+        let (half, from) = (self.tooth / 2, self.in_middle() - self.tooth / 2);
+        let wanted = places[self.in_tooth(0, half)][2];
+        let rows = (0..self.depth).map(|row| self.in_tooth(row, 0));
+        for first in rows.chain((0..=self.rim).map(|row| self.in_rim(row, from))) {
+            let by = wanted - places[first + half][2];
+            for k in 0..=self.tooth {
+                let share = k.min(self.tooth - k) as f64 / half as f64;
+                places[first + k][2] += share * by;
+            }
+        }
     }
 }
 

@@ -272,8 +272,16 @@ fn edge<'j, 'g>(
     let may = gap < NEAR * pitch;
     let found =
         || known.and_then(|known| known.alike([last, first], blank)).or_else(|| ends_in_one_line([last, first], blank));
-    let shared = may.then(found).flatten()?;
+    let shared = may.then(found).flatten().filter(|shared| is_left(shared, last, blank))?;
     Some(Joint { pieces: pieces.clone(), shared })
+}
+
+/// Whether the blank reaches as far as the line in which a surface ends: where that lies above the tip all along, the tip cuts it off and teeth have
+/// lands.
+fn is_left(shared: &Shared<'_, '_>, last: &Piece<'_, '_>, blank: &Blank) -> bool {
+    let Shared::Ends([line, _]) = shared else { return true };
+    let above = |point: &[f64; 3]| blank.above_tip(last.arrangement.section(*point));
+    positions(&last.on_line(*line, blank, &ALONG)).iter().any(|point| above(point) < SAME_LINE)
 }
 
 /// Neighbours whose common line is not found.
@@ -283,9 +291,27 @@ fn lost(solid: &Solid, pieces: [&Piece<'_, '_>; 2], blank: &Blank) -> Failure {
         let (told, ways) = wider(&piece.surface, &beyond);
         (!beyond.is_empty()).then(|| (format!(": points where `{}` ends are {told}", piece.surface.name), ways))
     };
-    let (why, ways) = pieces.iter().find_map(beyond).unwrap_or_default();
+    let (why, ways) = pieces.iter().find_map(beyond).unwrap_or_else(|| nearest_known(pieces));
     let message = format!("{} neither end in one line nor meet all along the space{why}", told(solid, pieces));
     refused(solid, message, &ways.iter().map(String::as_str).collect::<Vec<&str>>())
+}
+
+/// Where sampled points of both come nearest to each other, and what may be done.
+fn nearest_known([first, second]: [&Piece<'_, '_>; 2]) -> (String, Vec<String>) {
+    let pairs = first.known.iter().flat_map(|a| second.known.iter().map(move |b| (a.position, b.position)));
+    let Some((a, b)) = pairs.min_by(|a, b| apart(a.0, a.1).total_cmp(&apart(b.0, b.1))) else {
+        return Default::default();
+    };
+    let [z, rho] = first.arrangement.section(a);
+    let from = if first.arrangement.is_closed() { "the axis" } else { "x = 0" };
+    let why = format!(
+        ": their sampled points come no nearer to each other than {}, at z {z:.4} mm, {rho:.4} mm from {from}",
+        length(apart(a, b))
+    );
+    let named =
+        "name in `of:` the surface between them, if the tool leaves one there, as its edge or its tip does".to_string();
+    let sharp = "or tools whose surfaces end in one line, as a flank and the rounding that touches it do".to_string();
+    (why, vec![named, sharp])
 }
 
 fn told(solid: &Solid, [first, second]: [&Piece<'_, '_>; 2]) -> String {

@@ -17,6 +17,7 @@ use crate::project::session::Session;
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
+use crate::project::units::length;
 use crate::solve::body::bricks_result::{BrickNumbers, MeshResult};
 use crate::solve::body::file_of;
 use crate::solve::body::refusal;
@@ -29,6 +30,8 @@ const MOST_BYTES: usize = 1 << 30;
 const LEAST_LAND: f64 = 1e-6;
 /// The scaled Jacobian below which bricks are good for nothing.
 const LEAST_SHAPE: f64 = 0.1;
+/// How far the volume of bricks may be off, as a share: stiffness goes by the third power of a width, and is 15 % off by then.
+const MOST_VOLUME: f64 = 0.05;
 /// Bytes of a node, in sections and in place, and of a brick's node, in parts and together.
 const OF_NODE: usize = 3 * size_of::<[f64; 3]>();
 const OF_CORNER: usize = 2 * size_of::<u32>() + size_of::<i64>();
@@ -116,14 +119,35 @@ fn one(
     let mesh = body.bricks(&counts, order, teeth as usize);
     let quality = mesh.quality();
     if quality.least_scaled_jacobian < LEAST_SHAPE || quality.least_jacobian <= 0.0 {
+        let shape = quality.least_scaled_jacobian.min(quality.least_jacobian);
         let message = format!(
-            "the bricks of `{}` would be folded or nearly so: their least scaled Jacobian is {:.3}, and has to be {LEAST_SHAPE} at the least",
-            solid.name,
-            quality.least_scaled_jacobian.min(quality.least_jacobian)
+            "the bricks of `{}` would be folded or nearly so: their least scaled Jacobian is {shape:.3}, and has to be {LEAST_SHAPE} at the least",
+            solid.name
         );
         let simpler = "a simpler blank: below the teeth, lines from every place of the spaces to the rest of the outline must not cross it, \
                        as they do where a web is much narrower than the teeth";
-        return refused(message, &["other numbers with option `elements`", simpler]);
+        let straight = (order == BrickOrder::Second)
+            .then(|| body.bricks(&counts, BrickOrder::First, teeth as usize).quality().least_scaled_jacobian);
+        let straight = straight.filter(|shape| *shape >= LEAST_SHAPE).map(|shape| {
+            format!("bricks of the first order, with option `order`: their least scaled Jacobian is {shape:.3} with the same numbers")
+        });
+        let ways = ["other numbers with option `elements`"].into_iter().chain(straight.as_deref()).chain([simpler]);
+        return refused(message, &ways.collect::<Vec<&str>>());
+    }
+    let exact = body.mass_properties().volume * f64::from(teeth) / f64::from(body.teeth());
+    let off = quality.volume / exact - 1.0;
+    let is_share = body.distinct() == 1 || teeth == body.teeth();
+    if is_share && off.abs() > MOST_VOLUME {
+        let message = format!(
+            "the bricks of `{}` would be another body: their volume is {:.1} % off, and their faces are off the generated surfaces by up to {}",
+            solid.name,
+            100.0 * off,
+            length(mesh.deviation)
+        );
+        return refused(
+            message,
+            &["more bricks with option `elements`, above all along the teeth where these wind about the axis"],
+        );
     }
     let sets = sets(&mesh, body, &names(space, body), teeth);
     let file = file_of(job, solid);

@@ -29,9 +29,17 @@ use crate::project::session::Session;
 use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
+use crate::project::units;
 use crate::solve::body::mounted::{MountedSolid, Mounting};
 use crate::solve::body::result::{SolidNumbers, SolidResult};
 use crate::solve::dataset::header;
+
+/// Bytes that a mesh may take: what machines of today can spare.
+const MOST_BYTES: usize = 1 << 30;
+/// Bytes of a triangle with its share of the vertices, while they are made and written.
+const OF_TRIANGLE: usize = 75;
+/// How many times as many triangles it may take where diagonals are not near enough: twice as many in both directions.
+const DOUBLED: usize = 4;
 
 /// Builds the bodies of jobs, measures them and writes their closed surfaces. `each` is given the result of each job.
 ///
@@ -68,6 +76,16 @@ fn built(
                         solid.name,
                         1e3 * off,
                         1e3 * allowed
+                    );
+                    NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
+                }));
+                let is_coarse = numbers.mesh.deviation_mm > request.deviation;
+                not_done.extend(is_coarse.then(|| {
+                    let message = format!(
+                        "the mesh of `{}` is off by {}, and {} is asked for: it cannot be finer",
+                        solid.name,
+                        units::off(numbers.mesh.deviation_mm),
+                        units::off(request.deviation)
                     );
                     NotDone::new(NotDoneKind::FaceInexact, &solid.name, message)
                 }));
@@ -114,7 +132,7 @@ fn one(
     (request, header): (&SolidRequest, &Header),
     (folder, session): (&mut Folder<'_>, Session<'_>),
 ) -> Result<(SolidNumbers, Shapes, Option<NotDone>), Failure> {
-    let space::Space { body, names, off } = space::body(job, solid, session)?;
+    let space::Space { body, names, off: error } = space::body(job, solid, session)?;
     let part = match request.part {
         // from the middle of its space to the middle of the same one a gear of one tooth goes all around
         _ if body.teeth() == 1 && body.arrangement().is_closed() => BodyPart::Gear,
@@ -122,7 +140,7 @@ fn one(
         SolidPart::Tooth => BodyPart::Tooth,
         SolidPart::Space => BodyPart::Space,
     };
-    let mesh = body.mesh(part, &body.fineness(part, request.deviation));
+    let (mesh, off) = meshed(&solid.name, (&body, part), request.deviation)?;
     let file = file_of(job, solid);
     let written =
         BodyMesh { name: &solid.name, frame: &solid.frame, vertices: &mesh.vertices, triangles: &mesh.triangles };
@@ -147,15 +165,36 @@ fn one(
     let numbers = SolidNumbers {
         step_deviation_mm: faces.as_ref().map(|faces| faces.deviation),
         gauges: gauges::measured(&body, request.ball),
-        ..SolidNumbers::new(
-            (&solid.name, &solid.frame, names),
-            (&body, off),
-            request.density,
-            (&mesh, request.deviation),
-        )
+        ..SolidNumbers::new((&solid.name, &solid.frame, names), (&body, error), request.density, (&mesh, off))
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
     Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }, no_sides))
+}
+
+/// The closed surface of a part, and how far it is off.
+///
+/// # Errors
+/// If it would take more memory than there is to spare.
+fn meshed(name: &str, (body, part): (&Body, BodyPart), tolerance: f64) -> Result<(ClosedMesh, f64), Failure> {
+    let most = MOST_BYTES / OF_TRIANGLE;
+    body.mesh(part, tolerance, most).map_err(|triangles| {
+        let fits = |deviation: &f64| body.triangles(part, &body.fineness(part, *deviation)) <= most / DOUBLED;
+        let possible = (0..).map(|step| rounded_up(tolerance, step)).find(fits).unwrap_or(tolerance);
+        Failure::TooLarge(format!(
+            "the mesh of `{name}` within {} would have {triangles} triangles or more: that would take about {:.1} GB, and {:.1} GB is the \
+             most; {} is possible with option `deviation`",
+            units::off(tolerance),
+            (triangles * OF_TRIANGLE) as f64 / 1e9,
+            MOST_BYTES as f64 / 1e9,
+            units::off(possible)
+        ))
+    })
+}
+
+/// Of the numbers 1, 2 and 5 with any power of ten the one that is so many steps above another number.
+fn rounded_up(number: f64, step: i32) -> f64 {
+    let power = number.log10().floor() as i32 + step / 3;
+    [1.0, 2.0, 5.0][(step % 3) as usize] * 10.0_f64.powi(power)
 }
 
 /// What the files of a solid are called.

@@ -19,6 +19,8 @@ use crate::solve::surface::{bound, problem};
 const MOST_LINES: usize = 9;
 /// Boxes that a search for a point of a line looks at: where Newton's method does not reach it there is mostly none.
 const BOXES: u64 = 200;
+/// Rows of known points besides the nearest from which a line is looked for.
+const MORE_ROWS: usize = 3;
 /// Points of so many machine code pays for.
 const MANY: usize = 64;
 /// An unknown whose known values lie this near to a function of the way along, as a share of their variance, tells rows of a space apart
@@ -177,6 +179,11 @@ impl<'j, 'g> Piece<'j, 'g> {
         (0..made.unknowns.len()).filter(move |k| is_motion(k) == (whose == EndsOf::Motions))
     }
 
+    /// Whether an unknown is one of the tool, and no motion.
+    pub(crate) fn is_of_tool(&self, unknown: usize) -> bool {
+        self.of(EndsOf::Tool).any(|other| other == unknown)
+    }
+
     /// An unknown, and how far along the space a point lies.
     pub(crate) fn across(&self, unknown: usize, blank: &Blank) -> [Expr<'g>; 2] {
         [self.surface.surface.unknowns[unknown], blank.share_of(self.section())]
@@ -190,6 +197,42 @@ impl<'j, 'g> Piece<'j, 'g> {
         far: impl Fn(&SurfacePoint) -> f64,
     ) -> SurfacePoints {
         let near = self.known.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
+        self.solved_from(coordinates, (targets, counts), near)
+    }
+
+    /// The same of a line, from the nearest known point of another row where the branch that the nearest one lies on leaves the ranges: it may lie
+    /// where two branches meet.
+    pub(crate) fn solved_line(
+        &self,
+        coordinates: [Expr<'g>; 2],
+        targets: &[[f64; 2]],
+        (unknown, far): (usize, impl Fn(&SurfacePoint) -> f64),
+    ) -> SurfacePoints {
+        let counts = [1, targets.len()];
+        let mut near: Vec<&SurfacePoint> = self.known.iter().collect();
+        near.sort_by(|a, b| far(a).total_cmp(&far(b)));
+        let mut rows: Vec<f64> = Vec::new();
+        near.retain(|point| {
+            let value = point.unknowns[unknown];
+            let is_new = rows.iter().all(|row| (row - value).abs() > SAME_LINE);
+            rows.extend(is_new.then_some(value));
+            is_new
+        });
+        let first = self.solved_from(coordinates, (targets, counts), near.first().copied());
+        if first.solved() == targets.len() {
+            return first;
+        }
+        let others = near.iter().skip(1).take(MORE_ROWS);
+        let mut others = others.map(|start| self.solved_from(coordinates, (targets, counts), Some(start)));
+        others.find(|points| points.solved() == targets.len()).unwrap_or(first)
+    }
+
+    fn solved_from(
+        &self,
+        coordinates: [Expr<'g>; 2],
+        (targets, counts): (&[[f64; 2]], [usize; 2]),
+        near: Option<&SurfacePoint>,
+    ) -> SurfacePoints {
         let (problem, start) = (self.problem(coordinates), near.map(|point| &point.unknowns[..]));
         if targets.len() >= MANY {
             return problem.solve_points(targets, counts, start, None).0;
@@ -233,8 +276,9 @@ impl<'j, 'g> Piece<'j, 'g> {
 
     /// The same of the unknown that tells rows apart, if it is one of the tool.
     pub(crate) fn ends_of_rows(&self, blank: &Blank, along: &[f64]) -> Vec<EndLine> {
-        let of_tool = |unknown: &usize| self.of(EndsOf::Tool).any(|other| other == *unknown);
-        let Some(unknown) = self.across_tool(blank).filter(of_tool) else { return Vec::new() };
+        let Some(unknown) = self.across_tool(blank).filter(|unknown| self.is_of_tool(*unknown)) else {
+            return Vec::new();
+        };
         let Range { low, high } = self.bound().ranges()[unknown];
         let line = |value: f64| {
             let points = self.on_line((unknown, value), blank, along);

@@ -1,6 +1,6 @@
 //! Why the surfaces of a solid bound no body, and ways out.
 
-use flank_chain_dsl::{GeneratedSurface, Job, Solid};
+use flank_chain_dsl::{Dimension, GeneratedSurface, Job, Solid};
 use flank_solver::{Blank, BodyFault, Outcome, SurfacePoint};
 
 use crate::project::failure::Failure;
@@ -14,6 +14,17 @@ use crate::solve::reasons;
 pub(crate) fn refused(solid: &Solid, message: String, ways: &[&str]) -> Failure {
     let ways = ways.iter().map(ToString::to_string).collect();
     Failure::NotDone(vec![NotDone::new(NotDoneKind::NoBody, &solid.name, message).with(ways)])
+}
+
+/// The same with another way out, before the others.
+pub(crate) fn with_way(failure: Failure, way: String) -> Failure {
+    match failure {
+        Failure::NotDone(mut told) => {
+            told.iter_mut().for_each(|told| told.details.insert(0, way.clone()));
+            Failure::NotDone(told)
+        }
+        other => other,
+    }
 }
 
 /// Why a solid has no body, of what has kept it from being built.
@@ -83,7 +94,7 @@ pub(crate) fn unsolved(
 }
 
 /// What charts that bound no body are told as; `names` are those of the charts.
-pub(crate) fn faulty(solid: &Solid, (blank, names): (&Blank, &[&str]), fault: BodyFault) -> Failure {
+pub(crate) fn faulty(solid: &Solid, (blank, names, has_edge): (&Blank, &[&str], bool), fault: BodyFault) -> Failure {
     let segments = blank.outline.segments();
     let name = |segment: usize| &segments[segment].name;
     let of = &solid.name;
@@ -113,6 +124,49 @@ pub(crate) fn faulty(solid: &Solid, (blank, names): (&Blank, &[&str]), fault: Bo
                 names[first], names[second]
             ),
             &[&crossed([first, second], names)],
+        ),
+        BodyFault::BesideTop { below, beside, place: [z, rho] } => {
+            let is_round = blank::arrangement(solid).is_closed();
+            let dimension = if is_round { Dimension::ANGLE } else { Dimension::LENGTH };
+            let beside = units::text(dimension, beside, 4);
+            let (first, last) = (names[0], names[names.len() - 1]);
+            let beside = if is_round { format!("{beside} about the axis") } else { beside };
+            refused(
+                solid,
+                format!(
+                    "the teeth of `{of}` end in an edge {} below their top and {beside} beside it, at z {z:.4} mm, {rho:.4} mm from {from}: `{last}` \
+                     and `{first}` of the next space end there in one line, and what lies above it would fold over it",
+                    length(below)
+                ),
+                &[&format!(
+                    "`{first}` and `{last}` that end on the top of the teeth: begin them on the tool where it leaves that"
+                )],
+            )
+        }
+        // teeth with a land end at the tip: what goes through it is the ground of the spaces
+        BodyFault::Through { segment, by } if segment == blank.ends[1] && !has_edge => {
+            let rest: Vec<String> = blank.rest().iter().map(|segment| format!("`{}`", segment.name)).collect();
+            refused(
+                solid,
+                format!(
+                    "the spaces of `{of}` go {} through `{}` of its outline, by which they leave the blank: its material lies on the other side of \
+                     the tip, between it and {}",
+                    length(by),
+                    name(segment),
+                    rest.join(", ")
+                ),
+                &[&format!("{} on the side of the ground of the spaces, and beyond it", rest.join(", "))],
+            )
+        }
+        BodyFault::Through { segment, by } if !blank.ends.contains(&segment) => refused(
+            solid,
+            format!(
+                "the spaces of `{of}` go {} through `{}` of its outline, and leave it by `{}`",
+                length(by),
+                name(segment),
+                name(blank.ends[1])
+            ),
+            &[&format!("`{}` farther from the spaces by more than that, or spaces that are less deep", name(segment))],
         ),
         BodyFault::Through { segment, by } => refused(
             solid,
@@ -151,7 +205,7 @@ pub(crate) fn wider(surface: &GeneratedSurface<'_>, beyond: &[(usize, f64)]) -> 
     };
     let range = |(unknown, _): &(usize, f64)| {
         let of = &surface.unknowns[*unknown];
-        let [low, high] = [of.low, of.high].map(|end| units::as_given(of.dimension, end));
+        let [low, high] = [of.low, of.high].map(|end| units::told(of.dimension, end));
         let owner = match surface.generation.motions.contains(&of.variable) {
             true => "the motion".to_string(),
             false => format!("of {}", surface.generation.tool_name),

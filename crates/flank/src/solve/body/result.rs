@@ -70,7 +70,7 @@ pub struct MeshNumbers {
     pub vertices: usize,
     /// Triangles.
     pub triangles: usize,
-    /// The middles of its edges lie no farther off the exact surfaces, mm.
+    /// How far the middles of its edges lie off the exact surfaces at the most, mm; measured.
     pub deviation_mm: f64,
     /// What it encloses.
     pub volume_mm3: f64,
@@ -241,9 +241,9 @@ impl fmt::Display for SolidNumbers {
         writeln!(f, "  inertia  {xx:.4}, {yy:.4}, {zz:.4} kg mm² about x, y, z through the centre")?;
         writeln!(
             f,
-            "  mesh     {} triangles within {:.3} um, {:.4} mm³",
+            "  mesh     {} triangles off by at most {}, {:.4} mm³",
             mesh.triangles,
-            1e3 * mesh.deviation_mm,
+            units::off(mesh.deviation_mm),
             mesh.volume_mm3
         )?;
         let told = |step: f64| format!("  faces    off by at most {} in the STEP file\n", units::off(step));

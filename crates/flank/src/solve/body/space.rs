@@ -59,18 +59,19 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
         return Err(refused(solid, message, &["name them in their order in `of: […]`, the root among them"]));
     }
     let names: Vec<&str> = spaces[0].iter().map(|piece| piece.surface.name.as_str()).collect();
-    let faulty = |fault: BodyFault| refusal::faulty(solid, (&blank, &names), fault);
+    let faulty = |fault: BodyFault, has_edge: bool| refusal::faulty(solid, (&blank, &names, has_edge), fault);
     let (body, off) = match between(solid, (&spaces, &borders, &blank), session)? {
         (Ok(body), off) => (body, off),
         (Err(fault), _) => {
+            let has_edge = borders[0].has_edge();
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
             let edges = borders
                 .into_iter()
                 .zip(&beside)
                 .map(|(borders, beside)| borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed));
-            let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault))?;
+            let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault, has_edge))?;
             let (body, off) = between(solid, (&spaces, &borders, &blank), session)?;
-            (body.map_err(faulty)?, off)
+            (body.map_err(|fault| faulty(fault, true))?, off)
         }
     };
     Ok(Space { body, names: names.into_iter().map(str::to_string).collect(), off })
@@ -201,12 +202,19 @@ fn at_tip(
         let [z, rho] = piece.arrangement.section(point.position);
         (z - middle[0]).hypot(rho - middle[1])
     };
-    let points = piece.solved(piece.section(), (&targets, [1, shares.len()]), far);
+    let points = piece.solved_line(piece.section(), &targets, (unknown, far));
     let tip = format!(
         "`{}` of the outline, where the first surface of a space begins and the last one ends,",
         blank.bounds()[1].name
     );
-    all_solved(solid, (piece, &tip), &points)?;
+    all_solved(solid, (piece, &tip), &points).map_err(|failure| {
+        let between = format!(
+            "name in `of:` the surface between `{}` and the tip, if the tool leaves one there",
+            piece.surface.name
+        );
+        let is_beyond_tool = piece.beyond(&points).iter().any(|(unknown, _)| piece.is_of_tool(*unknown));
+        if is_beyond_tool { refusal::with_way(failure, between) } else { failure }
+    })?;
     Ok((0..points.len()).map(|k| points.unknowns(k)[unknown]).collect())
 }
 

@@ -37,10 +37,6 @@ pub(crate) const FACES: [[usize; 8]; 6] = [
     [3, 7, 4, 0, 19, 15, 16, 11],
 ];
 
-/// The corners next to each corner, in the order of a right-handed frame.
-pub(crate) const BESIDE: [[usize; 3]; 8] =
-    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
-
 /// The derivatives of all shape functions at a point of a brick, and the weight of the point.
 pub(crate) struct GaussPoint {
     pub(crate) slopes: Vec<[f64; 3]>,
@@ -62,19 +58,25 @@ pub(crate) fn gauss_points(order: BrickOrder) -> Vec<GaussPoint> {
     points
 }
 
-/// The determinant of the derivatives of the position at a point.
-pub(crate) fn jacobian(slopes: &[[f64; 3]], nodes: &[[f64; 3]]) -> f64 {
+/// The derivatives of the position at a point.
+pub(crate) fn frame(slopes: &[[f64; 3]], nodes: &[[f64; 3]]) -> [[f64; 3]; 3] {
     let mut by = [[0.0; 3]; 3];
     for (slope, node) in slopes.iter().zip(nodes) {
         for (row, slope) in by.iter_mut().zip(slope) {
             (0..3).for_each(|k| row[k] += slope * node[k]);
         }
     }
-    let [a, b, c] = by;
+    by
+}
+
+/// Their determinant.
+pub(crate) fn jacobian(slopes: &[[f64; 3]], nodes: &[[f64; 3]]) -> f64 {
+    let [a, b, c] = frame(slopes, nodes);
     a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])
 }
 
-fn slopes(order: BrickOrder, at: [f64; 3]) -> Vec<[f64; 3]> {
+/// The derivatives of all shape functions at a point.
+pub(crate) fn slopes(order: BrickOrder, at: [f64; 3]) -> Vec<[f64; 3]> {
     NODES[..order.nodes()].iter().map(|node| slope(order, node.map(f64::from), at)).collect()
 }
 
@@ -103,6 +105,10 @@ fn slope(order: BrickOrder, node: [f64; 3], at: [f64; 3]) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The corners next to each corner, in the order of a right-handed frame.
+    const BESIDE: [[usize; 3]; 8] =
+        [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
 
     /// Shape functions of either order give back any polynomial that they hold: here the determinant of a map with quadratic terms.
     #[test]

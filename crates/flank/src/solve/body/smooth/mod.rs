@@ -88,7 +88,11 @@ pub(crate) fn gear(
         rest: body.blank().rest().into_iter().map(segment).collect(),
         deviation: deviation.max(off),
         // parts that are alike have equal shares of the whole
-        volume: if is_whole { volume } else { volume / f64::from(body.teeth()) },
+        volume: match body.distinct() {
+            _ if is_whole => Some(volume),
+            1 => Some(volume / f64::from(body.teeth())),
+            _ => None,
+        },
         area: is_whole.then_some(area),
         centre: is_whole.then_some(centre),
     })
