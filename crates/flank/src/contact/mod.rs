@@ -16,6 +16,7 @@ pub(crate) mod place;
 mod proof;
 pub(crate) mod result;
 pub(crate) mod rolling;
+mod sampled;
 pub(crate) mod summary;
 pub(crate) mod tester;
 mod text;

@@ -7,7 +7,7 @@ use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{BoundSurface, ContactProblem, GapProblem, Outline, Range, RollingPair, SurfacePoint};
 
-use crate::contact::place;
+use crate::contact::sampled;
 use crate::project::failure::Failure;
 use crate::project::session::Session;
 use crate::project::units;
@@ -69,7 +69,7 @@ impl<'j, 'g> Members<'j, 'g> {
 
     /// Where a member's teeth end, as far as it is known.
     pub(crate) fn outline(&self, member: usize) -> Option<Outline> {
-        let sampled = || self.ends_at_sample.then(|| place::sampled(self.surfaces[member], &self.points[member]));
+        let sampled = || self.ends_at_sample.then(|| sampled::outline(self.surfaces[member], &self.points[member]));
         self.solids[member].map(blank::outline).or_else(|| sampled().flatten())
     }
 

@@ -3,9 +3,9 @@
 use flank_solver::{Gap, GapProblem, Outcome, RollingPair};
 
 use crate::contact::pair::Members;
-use crate::contact::place::sides;
 use crate::contact::result::ContactPattern;
 use crate::contact::rolling::Rolling;
+use crate::contact::sampled::sides;
 
 /// The flanks of a pair of teeth are compared while they are nearer than this, or so many films, mm.
 const NEAR: f64 = 0.2;
