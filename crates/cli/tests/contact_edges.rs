@@ -256,3 +256,66 @@ fn a_law_of_other_teeth_is_told() {
         assert!(!found["not_done"].to_string().contains("reach into each other"), "{spec}");
     }
 }
+
+/// An error of the eccentricity that takes the clearance away leaves the backlash of its neighbours, where the lag is locked at the end of the
+/// roll and the path was lost: 0.0212 deg by a closed form of both equidistants, which falls to 0.0208 deg a nanometre farther.
+#[test]
+fn a_clearance_of_nothing_has_a_backlash() {
+    let of = |contact: &str| {
+        solved("edges_locked", &["specs/pairs/cycloidal_drive.chain", contact, "--error", "m.E=0.02mm"])
+    };
+    let both = ["forward", "backward"].map(of);
+    for found in &both {
+        let least = found["backlash"]["least"].as_f64().expect("a backlash");
+        assert!((least - 0.0211).abs() < 5e-4, "{least}");
+    }
+    let [forward, backward] = both.map(|found| peak_to_peak(&found));
+    // one is the mirror image of the other: rounding of positions whose middles are solved apart
+    assert!((forward - backward).abs() < 1e-3, "{forward} {backward}");
+}
+
+/// Extremes, transfers, what edges carry and the pattern are those of the pair, however few positions are asked for.
+#[test]
+fn few_positions_lose_no_extreme() {
+    let worm = ["specs/pairs/worm_and_wheel.chain"];
+    let wrong = ["specs/pairs/worm_and_wheel.chain", "--error", "m.A=-0.05mm"];
+    let face = ["specs/pairs/face_gear_pair.chain", "--error", "m.S=3arcmin"];
+    for arguments in [&worm[..], &wrong, &face] {
+        let of = |positions: &str| solved("edges_few", &[arguments, &["--positions", positions]].concat());
+        let known = of("120");
+        for positions in ["4", "7", "12"] {
+            let found = of(positions);
+            let off = peak_to_peak(&found) / peak_to_peak(&known) - 1.0;
+            // extremes are solved where two positions or a transfer tell that there is one: 61 positions are off by 5e-5
+            assert!(off.abs() < 1e-3, "{arguments:?} {positions}: {off:e}");
+            let path = |of: &Value| of["edges"].as_array().expect("edges").len();
+            assert_eq!(path(&found), path(&known), "{arguments:?} {positions}");
+        }
+    }
+}
+
+/// The throat of a wheel takes over where it is told, and ends where the next pair does: both solved, whatever the positions.
+#[test]
+fn edges_carry_between_solved_places() {
+    for positions in ["12", "60", "61"] {
+        let found = solved("edges_between", &["specs/pairs/worm_and_wheel.chain", "--positions", positions]);
+        let throat =
+            found["edges"].as_array().expect("edges").iter().find(|of| of["edge"].to_string().contains("throat"));
+        let throat = throat.expect("it carries");
+        let [from, to] = ["from", "to"].map(|end| throat[end].as_f64().expect("a turn"));
+        let transfers = found["error"]["transfers"].as_array().expect("transfers");
+        // halving settles a place to 1e-12 of a step
+        assert!(transfers.iter().any(|of| (of.as_f64().expect("a turn") - from).abs() < 1e-6), "{positions}: {found}");
+        assert!((to - 196.557).abs() < 1e-2, "{positions}: {to}");
+    }
+}
+
+/// Numbers that are rounding are not told as such: no share of a parabola that is zero, and a film as it was given.
+#[test]
+fn rounding_is_not_told() {
+    let face = solved("edges_rounding", &["specs/pairs/face_gear_pair.chain", "--sensitivity"]);
+    let influences = face["influences"].as_array().expect("influences");
+    assert!(!influences.is_empty() && influences.iter().all(|of| of["parabola"].is_null()), "{influences:?}");
+    let thin = flank(&["contact", "--no-picture", "specs/pairs/face_gear_pair.chain", "--compound", "1e-9mm"]);
+    assert!(text(&thin.stdout).contains("within 0.000001 um"), "{}", text(&thin.stdout));
+}

@@ -123,8 +123,8 @@ fn what_is_not_possible_is_told() {
         ("path: 20 deg".into(), other.to_vec(), "none of these settings changes path"),
         ("ellipse: 9 mm".into(), other.to_vec(), "none of these settings changes ellipse"),
         ("transmission_error: 10 arcsec".into(), other.to_vec(), "none of these settings changes transmission_error"),
-        // the cradle's angle turns the tooth, and shifts where the roll is modified
-        ("path: 20 deg".into(), vec!["p.cradle_angle"], "path: with all else as it is wanted it comes to 8."),
+        // the cradle's angle turns the tooth, so that the lag leaves its range, and shifts where the roll is modified
+        ("path: 20 deg".into(), vec!["p.cradle_angle"], "range: `lag` would have to leave its range"),
         // more numbers than settings
         (place.into(), vec!["p.radial_distance"], "z and rho together"),
         ("lengthwise: 0.4, profilewise: 0.8".into(), vec!["p.ratio_of_roll"], "lengthwise and profilewise together"),
@@ -177,4 +177,71 @@ fn least_squares_give_way_to_what_is_exact() {
         assert!(off < of.within.unwrap_or(1e-6), "{of:?}");
         assert!(of.within.is_none() || off > 1e-6, "two settings have only two numbers to give: {of:?}");
     }
+}
+
+/// A shipped pair with other lines and wishes.
+fn over(pair: &str, lines: &str) -> JobSelection {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/pairs/over.chain");
+    let text = format!("use \"{pair}.chain\"\njob over extends {pair} {{\n{lines}\n}}");
+    let files = Buffers::over(Arc::new(Disk)).with(&spec, text);
+    JobSelection { project: Project::open(spec, Arc::new(files)), job: Some("over".to_string()), set: vec![] }
+}
+
+fn found(pair: &str, lines: &str, vary: &[&str]) -> Result<SynthesisResult, Failure> {
+    let vary = vary.iter().map(|name| name.to_string()).collect();
+    synthesis(&SynthesisRequest { vary, ..SynthesisRequest::new(over(pair, lines), "wish") }, &Unwatched)
+}
+
+/// A wish for which the lag leaves its range is told by that, whatever may be set; with a wider range it is met.
+#[test]
+fn the_range_that_is_in_the_way_is_told() {
+    let wish = "want wish in drive_side = vertex(lengthwise: 0.3172, profilewise: 0.7313, path: 15.826 deg)";
+    let four = ["p.radial_distance", "p.work_offset", "p.ratio_of_roll", "p.modified_roll_2c"];
+    let six = [&four[..], &["p.sliding_base", "pinion_cutter.blade_angle"]].concat();
+    for vary in [&four[..], &six] {
+        let narrow = found("bevel_19x62", wish, vary).expect("a result");
+        let told = format!("{:?}", narrow.not_done);
+        assert!(told.contains("range: `lag` would have to leave its range"), "{vary:?}: {told}");
+    }
+    let range = "unknown lag : angle in 2.7 deg .. 5.5 deg";
+    let wide = found("bevel_19x62", &format!("{range}\n{wish}"), &four).expect("a result");
+    assert!(wide.conditions.iter().all(|of| of.is_met), "{:?}", wide.not_done);
+    assert!(wide.not_done.iter().all(|of| of.kind != NotDoneKind::NotMet), "{:?}", wide.not_done);
+}
+
+/// Where the setting that does most does not bring it, others are tried, those that were not are named, and no number is told as an end that is farther
+/// off than the one that was reached.
+#[test]
+fn other_settings_are_tried_or_named() {
+    let wish = "want wish in drive_side = vertex(ellipse: 8 mm)";
+    let chosen = found("bevel_19x62", wish, &[]).expect("a result");
+    let told = format!("{:?}", chosen.not_done);
+    let tried = ["p.radial_distance", "p.work_offset", "p.ratio_of_roll"];
+    assert!(told.contains("settings: not tried") && tried.iter().all(|name| !told.contains(name)), "{told}");
+    let few = found("bevel_19x62", wish, &["p.ratio_of_roll"]).expect("a result");
+    let told = format!("{:?}", few.not_done);
+    assert!(told.contains("others than these may bring it"), "{told}");
+    assert!(few.not_done.iter().all(|of| of.place.is_some()), "{told}");
+    let reached = few.conditions[0].reached.expect("an ellipse");
+    let end = told.split("it comes to ").nth(1).and_then(|rest| rest.split(' ').next()?.parse::<f64>().ok());
+    assert!(end.is_none_or(|end| (8.0 - end).abs() <= (8.0 - reached).abs() + 1e-4), "{reached}: {told}");
+}
+
+/// What stands at the end of the way is told at the end of it, and not only nearer by.
+#[test]
+fn the_end_of_a_tool_is_told_all_the_way() {
+    let full = "want wish in drive_side = vertex(lengthwise: 0.6679, path: 15.737 deg, ellipse: 4.023 mm)";
+    let part = "want wish in drive_side = vertex(lengthwise: 0.597160, path: 18.72616 deg, ellipse: 6.750674 mm)";
+    for wish in [part, full] {
+        let told = format!("{:?}", found("hypoid_pair", wish, &[]).expect("a result").not_done);
+        assert!(told.contains("range: `s` would have to leave its range"), "{wish}: {told}");
+    }
+}
+
+/// An even error has no vertex, and what to do about that is said.
+#[test]
+fn an_even_error_has_no_vertex() {
+    let wish = "want wish in drive_side = vertex(z: 34.5 mm, rho: 165 mm)";
+    let Err(Failure::Unsolved(told)) = found("face_gear_pair", wish, &[]) else { panic!("there is no vertex") };
+    assert!(told.contains("is even as it is") && told.contains("crown a flank along the path"), "{told}");
 }

@@ -18,6 +18,8 @@ const A_LENGTH: f64 = 0.01;
 const AN_ANGLE: f64 = std::f64::consts::PI / 180.0 / 60.0;
 /// A setting that moves the middle by less, mm, and changes the error by less, urad or um, changes nothing: rounding.
 const NOTHING: f64 = 1e-9;
+/// A second derivative of the error below this is that of an even one: rounding. No share of it is told.
+const EVEN: f64 = 1e-12;
 
 /// The errors of all axes of the pair's machine: those that are asked for, and none of the others.
 ///
@@ -97,7 +99,7 @@ pub(crate) fn of_all<'g>(
             moved_mm: [way(0), way(1)],
             along_rows_mm: on.map(|on| on.map(|to| unit * dot(&change.moved[1], &to))),
             error: fine(unknown, unit * change.lag),
-            parabola: (parabola != 0.0).then(|| unit * change.lag_curvature / parabola),
+            parabola: (parabola.abs() > EVEN).then(|| unit * change.lag_curvature / parabola),
             ellipse: ellipse.filter(|_| middle.ellipse(compound).is_some()),
             turn: units::shown(members.contact.roll.dimension, unit * change.roll),
         })

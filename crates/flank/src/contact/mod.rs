@@ -1,5 +1,6 @@
 //! `flank contact`
 
+pub(crate) mod backlash;
 pub(crate) mod drawn;
 pub(crate) mod family;
 pub(crate) mod files;
@@ -15,6 +16,7 @@ pub(crate) mod place;
 mod proof;
 pub(crate) mod result;
 pub(crate) mod rolling;
+mod sampled;
 pub(crate) mod summary;
 pub(crate) mod tester;
 mod text;
@@ -103,7 +105,7 @@ fn of_contact(
     let _working = session.begin(format!("rolling {}", contact.name))?;
     let steps = request.positions as usize;
     let rolling = match Rolling::of_members(job, &mut members, &errors, steps) {
-        Ok(rolling) => rolling,
+        Ok(rolling) => rolling.closely(&members),
         Err(why) => {
             let summary = Summary::new(job, &members, request, &errors);
             let refused = origin.located(&[job], vec![refused(&members, why)]);
@@ -121,7 +123,7 @@ fn of_contact(
         Vec::new()
     };
     let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
-    let backlash = summary::backlash(job, &members, request, &errors, &rolling, session)?;
+    let (backlash, unsound) = backlash::of(job, &members, request, &errors, &rolling, session)?;
     let rooms = interference::of_spaces(job, &members, &errors, &rolling, session)?;
     let (proven, open) = if request.certify {
         let (proven, open) = proof::of_engagement(&members, &rolling);
@@ -150,7 +152,7 @@ fn of_contact(
         proven,
         files,
         grids,
-        not_done: origin.located(&[job], [&result.not_done[..], &rooms.not_done, &open, &unmilled].concat()),
+        not_done: origin.located(&[job], [&result.not_done[..], &unsound, &rooms.not_done, &open, &unmilled].concat()),
         remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
         ..result
     })
@@ -221,7 +223,7 @@ pub(crate) fn rolled<'j, 'g>(
     let mut members = Members::solved(job, contact, session)?;
     members.check_range(job)?;
     let rolling = match Rolling::of_members(job, &mut members, &errors, request.positions as usize) {
-        Ok(rolling) => rolling,
+        Ok(rolling) => rolling.closely(&members),
         Err(why) => {
             let nothing = Summary::new(job, &members, request, &errors).of_nothing();
             let result = ContactResult { not_done: vec![refused(&members, why)], ..nothing };
@@ -290,6 +292,13 @@ fn refused(members: &Members<'_, '_>, why: NoContact) -> NotDone {
         NoContact::Locked => (
             format!("`{}` moves nothing along the normal: the pair is self-locking there", lag.name),
             vec!["the unknown has to turn or shift a member towards its mate".to_string()],
+        ),
+        NoContact::Endless => (
+            format!("{first} and {second} touch along a line, and nothing says where it ends"),
+            vec![
+                "say with a `solid` of one member where its teeth end".to_string(),
+                "or sample a flank on a grid whose corners lie around it: a line of contact ends where the sample does".to_string(),
+            ],
         ),
         NoContact::NotFound => (
             format!("{first} and {second} meet, but no place was found at which they touch"),

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{Contact, GeneratedSurface, Job, Parameter, Solid, SolidForm};
 use flank_expr::geometry::{Axis, Chain, Step};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{BoundSurface, ContactProblem, GapProblem, Range, RollingPair, SurfacePoint};
+use flank_solver::{BoundSurface, ContactProblem, GapProblem, Outline, Range, RollingPair, SurfacePoint};
 
+use crate::contact::sampled;
 use crate::project::failure::Failure;
 use crate::project::session::Session;
 use crate::project::units;
@@ -25,6 +26,8 @@ pub(crate) struct Members<'j, 'g> {
     pub(crate) points: [Vec<SurfacePoint>; 2],
     /// Which tooth of the second member meets the first: so many pitches from the one that the spec describes.
     pub(crate) tooth: i32,
+    /// Whether a flank without a solid ends where its sample does: that is known of lines of contact alone.
+    pub(crate) ends_at_sample: bool,
 }
 
 impl<'j, 'g> Members<'j, 'g> {
@@ -60,7 +63,14 @@ impl<'j, 'g> Members<'j, 'g> {
             bound: of_job.map(|surface| bound(job, surface)),
             points,
             tooth: 0,
+            ends_at_sample: false,
         }
+    }
+
+    /// Where a member's teeth end, as far as it is known.
+    pub(crate) fn outline(&self, member: usize) -> Option<Outline> {
+        let sampled = || self.ends_at_sample.then(|| sampled::outline(self.surfaces[member], &self.points[member]));
+        self.solids[member].map(blank::outline).or_else(|| sampled().flatten())
     }
 
     /// The other surfaces of a member's tooth space.
@@ -88,7 +98,8 @@ impl<'j, 'g> Members<'j, 'g> {
                 let own = points(job, self.contact, at, session)?;
                 let (mut surfaces, mut both) = (self.contact.surfaces, self.points.clone());
                 (surfaces[member], both[member]) = (at, own);
-                found.push(Members { tooth: self.tooth, ..Members::of(job, self.contact, surfaces, both) });
+                let (tooth, ends_at_sample) = (self.tooth, self.ends_at_sample);
+                found.push(Members { tooth, ends_at_sample, ..Members::of(job, self.contact, surfaces, both) });
             }
         }
         Ok((found, unknown))
@@ -118,7 +129,7 @@ impl<'j, 'g> Members<'j, 'g> {
             placements: [first, self.of_tooth(second)],
             roll: roll.variable,
             lag: (lag.variable, Range { low: lag.low, high: lag.high }),
-            outlines: self.solids.map(|solid| solid.map(blank::outline)),
+            outlines: [0, 1].map(|member| self.outline(member)),
             parameters: open.iter().map(|at| (axes[*at].variable, errors[*at])).collect(),
         }
     }
@@ -208,13 +219,23 @@ impl<'j, 'g> Members<'j, 'g> {
             return self.contact.every;
         }
         let [Some(first), Some(second)] = self.solids else { return None };
-        let pitches = |share: f64| {
-            let [of_roll, _] = self.turns(job, share);
+        let pitch = |of_roll: [f64; 2]| {
             [first, second].into_iter().zip(of_roll).map(|(solid, turn)| TAU / f64::from(solid.teeth) / turn.abs())
         };
-        let all: Vec<f64> = [0.0, 0.3, 0.6, 1.0].into_iter().flat_map(pitches).collect();
+        let all: Vec<f64> = self.along_the_roll(job).into_iter().flat_map(pitch).collect();
         let is_even = all.iter().all(|pitch| (pitch / all[0] - 1.0).abs() < EVEN);
         is_even.then_some(all[0])
+    }
+
+    /// Whether both members turn evenly with the roll.
+    pub(crate) fn is_even(&self, job: &Job<'g>) -> bool {
+        let all = self.along_the_roll(job);
+        all.iter().flat_map(|of| of.iter().zip(&all[0])).all(|(turn, first)| (turn / first - 1.0).abs() < EVEN)
+    }
+
+    /// How fast each member turns with the roll, at some of its positions.
+    fn along_the_roll(&self, job: &Job<'g>) -> [[f64; 2]; 4] {
+        [0.0, 0.3, 0.6, 1.0].map(|share| self.turns(job, share)[0])
     }
 
     /// How fast each member turns about its axis with the roll, then with the unknown, at a share of the range of the roll.

@@ -5,6 +5,7 @@ use flank_solver::{Gap, GapProblem, Outcome, RollingPair};
 use crate::contact::pair::Members;
 use crate::contact::result::ContactPattern;
 use crate::contact::rolling::Rolling;
+use crate::contact::sampled::sides;
 
 /// The flanks of a pair of teeth are compared while they are nearer than this, or so many films, mm.
 const NEAR: f64 = 0.2;
@@ -41,7 +42,7 @@ pub(crate) fn on_both(
 
 /// Roll positions and lags at which one pair of teeth is near.
 pub(crate) fn positions(rolling: &Rolling, compound: f64) -> Vec<[f64; 2]> {
-    let engagement = &rolling.engagement;
+    let engagement = rolling.looked_at();
     let steps = engagement.first..engagement.first + engagement.points.len() as isize;
     let lag = |step: isize| match rolling.has_pitch {
         true => engagement.carried(step).map(|carried| carried.lag),
@@ -51,7 +52,7 @@ pub(crate) fn positions(rolling: &Rolling, compound: f64) -> Vec<[f64; 2]> {
     let position = |step: isize| {
         let (lag, point) = (lag(step)?, engagement.point(0, step)?);
         let apart = ((lag - point.lag) * point.opening).abs();
-        (apart <= reach).then(|| [rolling.roll(step), lag])
+        (apart <= reach).then(|| [rolling.roll_of(engagement, step), lag])
     };
     steps.filter_map(position).collect()
 }
@@ -80,7 +81,7 @@ fn pattern(members: &Members<'_, '_>, member: usize, gaps: &[Option<Gap>], compo
     let (rows, columns) = (extent(&|at| at / columns, rows), extent(&|at| at % columns, columns));
     let labels = surface.sample.as_ref().map_or(["", ""], |sample| sample.labels.each_ref().map(String::as_str));
     let touches = [(rows, labels[0]), (columns, labels[1])].into_iter().flat_map(|(extent, label)| {
-        let sides = sides(label);
+        let sides = sides(label, "its");
         let reached = extent.map_or([false; 2], |[low, high]| [low == 0.0, high == 1.0]);
         sides.into_iter().zip(reached).filter_map(|(side, reached)| reached.then_some(side))
     });
@@ -93,13 +94,5 @@ fn pattern(members: &Members<'_, '_>, member: usize, gaps: &[Option<Gap>], compo
         columns,
         least_um: gaps.iter().flatten().map(|gap| 1e3 * gap.distance).reduce(f64::min),
         touches: touches.collect(),
-    }
-}
-
-/// The two sides between which the rows or the columns of a sample run: `root -> tip`, or the least and the greatest `z`.
-fn sides(label: &str) -> [String; 2] {
-    match label.split_once(" -> ") {
-        Some((from, to)) => [from.to_string(), to.to_string()],
-        None => [format!("its first {label}"), format!("its last {label}")],
     }
 }

@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::Job;
 use flank_solver::{
-    ContactPoint, ContactProblem, ContactState, Engagement, NoContact, Outcome, RollingPair, SurfacePoint,
+    ContactPoint, ContactProblem, ContactState, Engagement, FlankEdge, NoContact, Outcome, RollingPair, SurfacePoint,
 };
 
 use crate::contact::pair::Members;
@@ -11,6 +11,12 @@ use crate::contact::pair::Members;
 const TRIED: usize = 13;
 /// Positions over a pitch among which the vertex is looked for.
 const COARSE: usize = 12;
+/// Positions over a pitch between which extremes, transfers and ends of edges are solved, at the least.
+const LOOKED_AT: usize = 60;
+/// Halvings of the way between two positions until the place at which another edge carries is settled.
+const HALVINGS: usize = 40;
+/// What carries beside a transfer is looked at so far from it, as a share of a step.
+const BESIDE: f64 = 1e-6;
 /// An error of the ratio below this at all positions is none: rounding.
 const STRAIGHT: f64 = 1e-12;
 
@@ -29,6 +35,8 @@ pub(crate) struct Rolling {
     pub(crate) first: ContactPoint,
     /// One pair of teeth through the mesh; its step 0 is the middle.
     pub(crate) engagement: Engagement,
+    /// The same at more positions, where few are asked for.
+    finer: Option<Engagement>,
     /// Where the lag is extreme, if it is somewhere.
     pub(crate) vertex: Option<ContactPoint>,
     /// Whether the pitch from tooth to tooth is known.
@@ -37,11 +45,35 @@ pub(crate) struct Rolling {
 
 impl Rolling {
     /// Mounted with errors. Of the second member's teeth it takes the one that touches within the range of the unknown: that of the spec or one
-    /// beside it.
+    /// beside it. A line of contact that no solid ends is ended by the samples.
     ///
     /// # Errors
     /// Why there is no contact.
     pub(crate) fn of_members<'g>(
+        job: &Job<'g>,
+        members: &mut Members<'_, 'g>,
+        errors: &[f64],
+        steps: usize,
+    ) -> Result<Rolling, NoContact> {
+        let found = Rolling::of_teeth(job, members, errors, steps);
+        if members.solids.iter().all(Option::is_some) || found.as_ref().is_ok_and(|of| is_told(&of.first)) {
+            return found;
+        }
+        let tooth = members.tooth;
+        members.ends_at_sample = true;
+        let is_line = |of: &Rolling| of.first.state == Some(ContactState::Line) && is_told(&of.first);
+        if let Some(of_lines) = Rolling::of_teeth(job, members, errors, steps).ok().filter(is_line) {
+            return Ok(of_lines);
+        }
+        (members.ends_at_sample, members.tooth) = (false, tooth);
+        match found {
+            Ok(of) if is_endless(&of.first) => Err(NoContact::Endless),
+            found => found,
+        }
+    }
+
+    /// The same as far as solids say where the flanks end.
+    fn of_teeth<'g>(
         job: &Job<'g>,
         members: &mut Members<'_, 'g>,
         errors: &[f64],
@@ -90,13 +122,29 @@ impl Rolling {
         let (vertex, middle) = match vertex {
             Some(vertex) => (Some(vertex.clone()), vertex),
             None => {
-                let coarse = problem.engagement(&first, pitch, steps.min(coarse), limits);
+                let coarse = problem.engagement(&first, pitch, coarse, limits);
                 let vertex = among(&problem, &coarse);
                 (vertex.clone(), vertex.or_else(|| middle(&problem, &coarse)).unwrap_or_else(|| first.clone()))
             }
         };
         let engagement = problem.engagement(&middle, pitch, steps, limits);
-        Rolling { problem, first, engagement, vertex, has_pitch }
+        Rolling { problem, first, engagement, finer: None, vertex, has_pitch }
+    }
+
+    /// The same, with a pitch looked at so closely that what is solved between positions does not depend on how many are asked for.
+    pub(crate) fn closely(self, members: &Members<'_, '_>) -> Rolling {
+        let Engagement { steps, pitch, .. } = self.engagement;
+        let least = if self.has_pitch { LOOKED_AT } else { 2 * LOOKED_AT };
+        let roll = &members.contact.roll;
+        let middle = self.middle().filter(|_| steps < least);
+        let all = least.div_ceil(steps.max(1)) * steps;
+        let finer = middle.map(|middle| self.problem.engagement(middle, pitch, all, [roll.low, roll.high]));
+        Rolling { finer, ..self }
+    }
+
+    /// The pair of teeth at the positions between which extremes, transfers and ends of edges are solved.
+    pub(crate) fn looked_at(&self) -> &Engagement {
+        self.finer.as_ref().unwrap_or(&self.engagement)
     }
 
     /// The point of the middle: where the error is extreme, or in the middle of contact of the flanks.
@@ -106,8 +154,14 @@ impl Rolling {
 
     /// Steps of one pitch about the middle, or all where there is one pair alone.
     pub(crate) fn steps(&self) -> std::ops::Range<isize> {
-        let steps = self.engagement.steps as isize;
-        if self.has_pitch { -(steps / 2)..steps - steps / 2 } else { self.all_steps() }
+        self.steps_of(&self.engagement)
+    }
+
+    /// The same of those that are looked at.
+    pub(crate) fn steps_of(&self, of: &Engagement) -> std::ops::Range<isize> {
+        let steps = of.steps as isize;
+        let all = of.first..of.first + of.points.len() as isize;
+        if self.has_pitch { -(steps / 2)..steps - steps / 2 } else { all }
     }
 
     /// All steps at which the pair of teeth touches.
@@ -118,15 +172,20 @@ impl Rolling {
 
     /// Roll position of a step.
     pub(crate) fn roll(&self, step: isize) -> f64 {
-        let Engagement { steps, pitch, .. } = self.engagement;
+        self.roll_of(&self.engagement, step)
+    }
+
+    /// The same of those that are looked at.
+    pub(crate) fn roll_of(&self, of: &Engagement, step: isize) -> f64 {
+        let Engagement { steps, pitch, .. } = *of;
         let middle = self.middle().map_or(f64::NAN, |point| point.roll);
         middle + step as f64 * pitch / steps as f64
     }
 
     /// Roll positions at which one pair of teeth hands over to the next.
     pub(crate) fn transfers(&self) -> Vec<f64> {
-        let engagement = &self.engagement;
-        let steps = if self.has_pitch { self.steps() } else { 0..0 };
+        let engagement = self.looked_at();
+        let steps = if self.has_pitch { self.steps_of(engagement) } else { 0..0 };
         let handed = (steps.start..steps.end).filter_map(|step| {
             let [before, after] = [step, step + 1].map(|step| engagement.carried(step).map(|carried| carried.pair));
             let (before, after) = before.zip(after).filter(|(before, after)| before != after)?;
@@ -138,7 +197,7 @@ impl Rolling {
             if [step, step + 1].into_iter().any(|step| ahead(step).is_some_and(|ahead| ahead < ALIKE)) {
                 return None;
             }
-            let between = [self.roll(step), self.roll(step + 1)];
+            let between = [step, step + 1].map(|step| self.roll_of(engagement, step));
             self.problem.transfer(engagement, [before, after], between)
         });
         handed.collect()
@@ -146,16 +205,17 @@ impl Rolling {
 
     /// Between which values the composite lag changes over a pitch; `transfers` are those of this.
     pub(crate) fn span(&self, transfers: &[f64]) -> Option<[f64; 2]> {
+        let of = self.looked_at();
         let lag = |step: isize| match self.has_pitch {
-            true => self.engagement.carried(step).map(|carried| carried.lag),
-            false => self.engagement.point(0, step).map(|point| point.lag),
+            true => of.carried(step).map(|carried| carried.lag),
+            false => of.point(0, step).map(|point| point.lag),
         };
         let at_transfers = transfers.iter().filter_map(|roll| self.lag_at(*roll));
         let joined = |[a, b]: [f64; 2], lag: f64| [a.min(lag), b.max(lag)];
-        let mut lags = self.steps().filter_map(lag).chain(at_transfers);
+        let mut lags = self.steps_of(of).filter_map(lag).chain(at_transfers);
         let first = lags.next()?;
         let of_positions = lags.fold([first; 2], joined);
-        let between = self.steps().filter_map(|step| self.extreme(step, of_positions));
+        let between = self.steps_of(of).flat_map(|step| self.extremes(step, of_positions, transfers));
         Some(between.fold(of_positions, joined))
     }
 
@@ -174,17 +234,17 @@ impl Rolling {
 
     /// Positions at which the flanks would have to touch beyond the ranges of their tools.
     pub(crate) fn outside(&self) -> usize {
-        let points = self.engagement.points.iter();
+        let points = self.looked_at().points.iter();
         points.filter(|point| point.is_of_flanks() && point.outcome != Outcome::Solved).count()
     }
 
     /// The contact that carries at any roll position.
     pub(crate) fn carrying(&self, roll: f64) -> Option<ContactPoint> {
-        let Engagement { steps, pitch, .. } = self.engagement;
+        let of = self.looked_at();
         let middle = self.middle()?.roll;
-        let near = ((roll - middle) / pitch * steps as f64).round() as isize;
-        let pairs = if self.has_pitch { self.engagement.pairs(near) } else { vec![0] };
-        let points = pairs.into_iter().filter_map(|pair| self.problem.pair_at(&self.engagement, pair, roll));
+        let near = ((roll - middle) / of.pitch * of.steps as f64).round() as isize;
+        let pairs = if self.has_pitch { of.pairs(near) } else { vec![0] };
+        let points = pairs.into_iter().filter_map(|pair| self.problem.pair_at(of, pair, roll));
         points.max_by(|a, b| height(a).total_cmp(&height(b)))
     }
 
@@ -193,15 +253,69 @@ impl Rolling {
         Some(self.carrying(roll)?.lag)
     }
 
-    /// Of the composite lag between two positions its extreme, if it has one there that lies beyond a span: on the tangents at both ends, which
-    /// meet there, or nearer to it each time.
-    fn extreme(&self, step: isize, [least, most]: [f64; 2]) -> Option<f64> {
-        let end = |step: isize| {
-            let of = if self.has_pitch { self.engagement.carried(step)?.pair } else { 0 };
-            let point = self.engagement.point(of, step)?;
-            Some([self.roll(step), point.lag, point.lag_slopes[0]])
+    /// Edges that carry over a pitch, each with the roll positions from which to which it does, no farther than the pitch goes: looked for at all
+    /// positions and on both sides of the transfers, and solved between them.
+    pub(crate) fn leading(&self, transfers: &[f64]) -> Vec<(Vec<FlankEdge>, [f64; 2])> {
+        let of = self.looked_at();
+        let edges = |point: &ContactPoint| (!point.is_of_flanks()).then(|| point.edges.clone());
+        let steps = self.steps_of(of);
+        let at_step = |step: isize| {
+            let point = of.carried(step).and_then(|carried| of.point(carried.pair, step));
+            (self.roll_of(of, step), point.and_then(edges))
         };
-        let (mut low, mut high) = (end(step)?, end(step + 1)?);
+        let at = |roll: f64| self.carrying(roll).as_ref().and_then(edges);
+        let beside = BESIDE * of.pitch / of.steps as f64;
+        let at_transfers =
+            transfers.iter().flat_map(|roll| [roll - beside, roll + beside]).map(|roll| (roll, at(roll)));
+        let mut all: Vec<(f64, Option<Vec<FlankEdge>>)> = steps.clone().map(at_step).chain(at_transfers).collect();
+        let end = self.roll_of(of, steps.end);
+        all.push((end, at(end)));
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let between = |of: &Option<Vec<FlankEdge>>, mut inside: f64, mut outside: f64| {
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (inside + outside);
+                if at(middle) == *of { inside = middle } else { outside = middle }
+            }
+            inside
+        };
+        let mut found = Vec::new();
+        let mut first = 0;
+        for run in all.chunk_by(|a, b| a.1 == b.1) {
+            let (begin, last) = (first, first + run.len() - 1);
+            first = last + 1;
+            let Some(edges) = &run[0].1 else { continue };
+            let from = begin.checked_sub(1).map_or(all[begin].0, |out| between(&run[0].1, all[begin].0, all[out].0));
+            let to = all.get(last + 1).map_or(all[last].0, |out| between(&run[0].1, all[last].0, out.0));
+            found.push((edges.clone(), [from, to]));
+        }
+        found
+    }
+
+    /// Of the composite lag between two positions its extremes that lie beyond a span: where one pair hands over to another between them, those of
+    /// each on its side.
+    fn extremes(&self, step: isize, span: [f64; 2], transfers: &[f64]) -> Vec<f64> {
+        let of = self.looked_at();
+        let pair = |step: isize| if self.has_pitch { Some(of.carried(step)?.pair) } else { Some(0) };
+        let end = |step: isize| {
+            let point = of.point(pair(step)?, step)?;
+            Some([self.roll_of(of, step), point.lag, point.lag_slopes[0]])
+        };
+        let Some((low, high)) = end(step).zip(end(step + 1)) else { return Vec::new() };
+        let Some(roll) = transfers.iter().find(|roll| **roll > low[0] && **roll < high[0]) else {
+            return self.extreme([low, high], span).into_iter().collect();
+        };
+        let at = |step: isize| {
+            let point = self.problem.pair_at(of, pair(step)?, *roll)?;
+            Some([*roll, point.lag, point.lag_slopes[0]])
+        };
+        let before = at(step).and_then(|there| self.extreme([low, there], span));
+        let after = at(step + 1).and_then(|there| self.extreme([there, high], span));
+        before.into_iter().chain(after).collect()
+    }
+
+    /// The same of one pair between two places, each with its roll position, lag and slope: on the tangents at both ends, which meet there, or nearer
+    /// to it each time.
+    fn extreme(&self, [mut low, mut high]: [[f64; 3]; 2], [least, most]: [f64; 2]) -> Option<f64> {
         let mut best = None;
         for _ in 0..EXTREME_STEPS {
             let [[a, lag_a, slope_a], [b, lag_b, slope_b]] = [low, high];
@@ -228,6 +342,17 @@ impl Rolling {
     pub(crate) fn state(&self) -> Option<ContactState> {
         self.middle().and_then(|point| point.state)
     }
+}
+
+/// Whether flanks touch along a line that nothing ends: nothing says where on it their contact is, nor how that moves.
+fn is_endless(point: &ContactPoint) -> bool {
+    let is_line = point.state == Some(ContactState::Line) || point.lag_slopes[0].is_nan();
+    is_line && point.edges.is_empty()
+}
+
+/// Whether it is known where a contact is.
+fn is_told(point: &ContactPoint) -> bool {
+    !is_endless(point) && point.state != Some(ContactState::Crossing)
 }
 
 /// The contact nearest to the middle of the roll.

@@ -8,17 +8,14 @@ use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
 use crate::contact::place::{fine, fine_unit, rows_at, shares};
 use crate::contact::result::{
-    Backlash, ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError,
-    PlaceOnFlank, TransmissionError,
+    ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError, PlaceOnFlank,
+    TransmissionError,
 };
 use crate::contact::rolling::Rolling;
 use crate::project::answer::Timing;
-use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::ContactRequest;
-use crate::project::session::Session;
 use crate::project::units;
-use crate::solve::blank;
 
 /// A contact this near to an edge lies on it: it is looked for by halving the roll, mm.
 const ON_EDGE: f64 = 1e-6;
@@ -108,6 +105,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
 
     pub(crate) fn of_rolling(&self, rolling: &Rolling, patterns: &[GapMap]) -> ContactResult {
         let ends = rolling.flank_ends();
+        let handed = rolling.transfers();
         let is_of_edge = rolling.middle().is_some_and(|middle| !middle.is_of_flanks());
         let kind = rolling.state().map(|state| match state {
             _ if is_of_edge => ContactKind::Edge,
@@ -118,10 +116,10 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         ContactResult {
             kind,
             middle: rolling.middle().map(|point| self.middle(rolling, point)),
-            error: self.error(rolling),
+            error: self.error(rolling, &handed),
             ratio: rolling.ratio(&ends),
             ends: ends.iter().map(|(way, point)| self.end(rolling, *way, point)).collect(),
-            edges: if rolling.has_pitch { self.edges(rolling) } else { Vec::new() },
+            edges: if rolling.has_pitch { self.edges(rolling, &handed) } else { Vec::new() },
             pattern: patterns.iter().map(|map| map.pattern.clone()).collect(),
             not_done: self.not_done(rolling, patterns),
             remarks: self.remarks(rolling),
@@ -160,10 +158,9 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         }
     }
 
-    fn error(&self, rolling: &Rolling) -> Option<TransmissionError> {
-        let handed = rolling.transfers();
-        let [low, high] = rolling.span(&handed)?;
-        let pairs = rolling.steps().map(|step| self.within_film(rolling, step)).max();
+    fn error(&self, rolling: &Rolling, handed: &[f64]) -> Option<TransmissionError> {
+        let [low, high] = rolling.span(handed)?;
+        let pairs = rolling.steps_of(rolling.looked_at()).map(|step| self.within_film(rolling, step)).max();
         Some(TransmissionError {
             unit: fine_unit(self.unknown()).to_string(),
             peak_to_peak: self.fine(high - low),
@@ -174,7 +171,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
 
     /// How many pairs of teeth are within the film of the one that carries.
     fn within_film(&self, rolling: &Rolling, step: isize) -> usize {
-        let engagement = &rolling.engagement;
+        let engagement = rolling.looked_at();
         let Some(carried) = engagement.carried(step) else { return 0 };
         let points = engagement.pairs(step).into_iter().filter_map(|pair| engagement.point(pair, step));
         points.filter(|point| ((point.lag - carried.lag) * point.opening).abs() <= self.request.compound).count()
@@ -197,8 +194,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         let inner = rolling.middle().map_or(Vec::new(), |middle| middle.edges.clone());
         let on = |member: usize| {
             let [x, y, z] = point.in_members[member];
-            let segments =
-                self.members.solids[member].map(|solid| blank::outline(solid).segments_at([z, x.hypot(y)], ON_EDGE));
+            let segments = self.members.outline(member).map(|outline| outline.segments_at([z, x.hypot(y)], ON_EDGE));
             segments.into_iter().flatten().map(move |segment| FlankEdge { member, segment })
         };
         [0, 1].into_iter().flat_map(on).find(|edge| !inner.contains(edge))
@@ -217,7 +213,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     }
 
     fn edge_name(&self, edge: FlankEdge) -> String {
-        self.members.solids[edge.member].map_or(String::new(), |solid| solid.outline[edge.segment].name.clone())
+        self.members.outline(edge.member).map_or(String::new(), |outline| outline.segments()[edge.segment].name.clone())
     }
 
     /// Edges that touch, in words.
@@ -228,21 +224,13 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     }
 
     /// Where edges carry over a pitch.
-    fn edges(&self, rolling: &Rolling) -> Vec<LeadingEdge> {
-        let mut found: Vec<LeadingEdge> = Vec::new();
-        let mut last = None;
-        for step in rolling.steps() {
-            let carried = rolling.engagement.carried(step);
-            let point = carried.and_then(|carried| rolling.engagement.point(carried.pair, step));
-            let Some(point) = point.filter(|point| !point.is_of_flanks()) else { continue };
-            let (edge, turn) = (self.whole_edge_name(&point.edges), self.turn(rolling.roll(step)));
-            match found.last_mut().filter(|leading| leading.edge == edge && last == Some(step - 1)) {
-                Some(leading) => leading.to = turn,
-                None => found.push(LeadingEdge { edge, from: turn, to: turn }),
-            }
-            last = Some(step);
-        }
-        found
+    fn edges(&self, rolling: &Rolling, handed: &[f64]) -> Vec<LeadingEdge> {
+        let told = |(edges, [from, to]): (Vec<FlankEdge>, [f64; 2])| LeadingEdge {
+            edge: self.whole_edge_name(&edges),
+            from: self.turn(from),
+            to: self.turn(to),
+        };
+        rolling.leading(handed).into_iter().map(told).collect()
     }
 
     fn not_done(&self, rolling: &Rolling, patterns: &[GapMap]) -> Vec<NotDone> {
@@ -256,14 +244,15 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                 units::counted(outside, "position")
             );
             let way =
-                "the piece of the tool that follows makes what touches there: a contact of its own, or a longer blade"
+                "the piece of the tool that follows makes what touches there: give it a contact of its own, or make the tool reach farther"
                     .to_string();
             told.push(NotDone::new(NotDoneKind::NotSolved, first, message).with(vec![way]));
         }
         told.extend(law::broken(self.job, self.members, rolling));
-        if let Some(roll) = rolling.engagement.missed.first() {
+        let missed = &rolling.looked_at().missed;
+        if let Some(roll) = missed.first() {
             let (dimension, roll_name) = (self.over(), &self.members.contact.roll.name);
-            let count = units::counted(rolling.engagement.missed.len(), "position");
+            let count = units::counted(missed.len(), "position");
             let message = format!(
                 "contact {name}: at {count} of `{roll_name}`, first at {}, {first} and {second} come together before the contact that was found",
                 units::text(dimension, *roll, 3)
@@ -294,12 +283,20 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
             |kind: RemarkKind, of: &str, message: String| Remark::new(kind, of, format!("contact {name}: {message}"));
         let mut told = Vec::new();
         for (surface, _) in self.members.surfaces.iter().zip(self.members.solids).filter(|(_, solid)| solid.is_none()) {
-            let message =
-                format!("no `solid` says where the teeth of {} end: its edges are not looked at", surface.name);
+            let name = &surface.name;
+            let message = match self.members.ends_at_sample {
+                true => {
+                    format!("no `solid` says where the teeth of {name} end: lines of contact end where its sample does")
+                }
+                false => format!("no `solid` says where the teeth of {name} end: its edges are not looked at"),
+            };
             told.push(remark(RemarkKind::NoEdges, &surface.name, message));
         }
         if !rolling.has_pitch {
             let message = match self.members.solids {
+                [Some(_), Some(_)] if !self.members.is_even(self.job) => {
+                    "one pair of teeth alone: the law does not turn both members evenly, and no `every` says when the next pair follows".to_string()
+                }
                 [Some(first), Some(second)] => format!(
                     "one pair of teeth alone: the law does not carry a tooth of {} ({}) on while one of {} ({}) passes",
                     second.name, second.teeth, first.name, first.teeth
@@ -325,48 +322,6 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         }
         told
     }
-}
-
-/// How much the pair can move between this contact and one of the opposite flanks, which moves the same unknown the other way.
-///
-/// # Errors
-/// If a flank is not sampled, or the work is cancelled.
-pub(crate) fn backlash(
-    job: &Job<'_>,
-    members: &Members<'_, '_>,
-    request: &ContactRequest,
-    errors: &[f64],
-    rolling: &Rolling,
-    session: Session,
-) -> Result<Option<Backlash>, Failure> {
-    let own = members.contact;
-    let Some(middle) = rolling.middle().filter(|_| rolling.has_pitch) else { return Ok(None) };
-    let others = job.contacts.iter().filter(|other| {
-        other.name != own.name && other.roll.variable == own.roll.variable && other.lag.variable == own.lag.variable
-    });
-    for other in others {
-        let mut of_other = Members::solved(job, other, session)?;
-        let Ok(opposite) = Rolling::of_members(job, &mut of_other, errors, request.positions as usize) else {
-            continue;
-        };
-        let is_opposite = opposite.middle().is_some_and(|point| point.opening * middle.opening < 0.0);
-        if !is_opposite || !opposite.has_pitch {
-            continue;
-        }
-        let room = |step: isize| {
-            let roll = rolling.roll(step);
-            let [here, there] = [rolling.lag_at(roll)?, opposite.lag_at(roll)?];
-            Some(((there - here) * middle.opening.signum(), roll))
-        };
-        let least = rolling.steps().filter_map(room).min_by(|a, b| a.0.total_cmp(&b.0));
-        return Ok(least.map(|(room, roll)| Backlash {
-            other: other.name.clone(),
-            least: units::shown(own.lag.dimension, room),
-            turn: units::shown(own.roll.dimension, roll),
-            normal: room * middle.opening.abs(),
-        }));
-    }
-    Ok(None)
 }
 
 /// Whether the flanks reach into each other where they should touch.

@@ -13,6 +13,11 @@ use crate::project::units;
 /// Below this a parabola or a curvature of the gap is zero, in the units in which it is printed: rounding.
 const NOTHING: f64 = 1e-9;
 
+/// A thickness as it was given: what changes between units leaves behind is none of it.
+fn film(um: f64) -> String {
+    format!("{}", format!("{um:.12e}").parse().unwrap_or(um))
+}
+
 fn small(value: f64) -> String {
     if value.abs() < NOTHING { "0".to_string() } else { units::scientific(value, 3) }
 }
@@ -141,7 +146,7 @@ impl ContactResult {
         };
         let gap =
             middle.gap.map_or(String::new(), |[a, b]| format!(", gap curvatures {} and {} 1/mm", small(a), small(b)));
-        let film = self.pattern.first().map_or(String::new(), |pattern| format!(" at {} um", pattern.film_um));
+        let film = self.pattern.first().map_or(String::new(), |pattern| format!(" at {} um", film(pattern.film_um)));
         let ellipse = middle.ellipse.map_or(String::new(), |[a, b]| {
             format!(", ellipse {} x {} mm{film}", fixed(2.0 * a, 2), fixed(2.0 * b, 2))
         });
@@ -244,6 +249,6 @@ impl ContactPattern {
             0 => String::new(),
             _ => format!("; touches {}", self.touches.join(", ")),
         };
-        format!("{share} % of {surface} within {film_um} um{extent}{least}{touches}")
+        format!("{share} % of {surface} within {} um{extent}{least}{touches}", film(*film_um))
     }
 }

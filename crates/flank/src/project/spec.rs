@@ -111,7 +111,9 @@ impl Origin {
             };
             let surface = surfaces().find(is_meant).map(|(_, surface)| surface.written);
             let solid = || jobs.iter().flat_map(|job| &job.solids).find(|solid| solid.name == *name);
-            let found = surface.or_else(|| solid().map(|solid| solid.written));
+            let want = || jobs.iter().flat_map(|job| &job.wants).find(|want| want.name == *name);
+            let found =
+                surface.or_else(|| solid().map(|solid| solid.written)).or_else(|| want().map(|want| want.written));
             message.place = found.map(|written| Place::of_span(&self.sources, written));
         }
         messages

@@ -12,7 +12,7 @@ use crate::compare::deviation;
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::map::{Named, find};
 use crate::contact::result::ContactResult;
-use crate::contact::{interference, rolled, summary};
+use crate::contact::{backlash, interference, rolled};
 use crate::convert::Conversion;
 use crate::project::failure::Failure;
 use crate::project::requests::{ContactRequest, JobSelection, Onto};
@@ -21,7 +21,7 @@ use crate::solve::body::{refusal, space};
 use crate::testing::points::Tested;
 
 /// Positions of a pitch at which contacts are looked at, and of a motion at which other machines are.
-const POSITIONS: u32 = 24;
+const POSITIONS: u32 = 60;
 pub(super) const FOLLOWED: u32 = 7;
 
 /// What is known of a job that is tested, each worked out once.
@@ -99,7 +99,9 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         let none = vec![0.0; contact.errors.len()];
         let mut result = rolled.result;
         if self.is_asked(index, |number| matches!(number, ContactNumber::Backlash | ContactNumber::NormalBacklash)) {
-            result.backlash = summary::backlash(job, &rolled.members, &request, &none, rolling, session)?;
+            let (found, unsound) = backlash::of(job, &rolled.members, &request, &none, rolling, session)?;
+            result.backlash = found;
+            result.not_done.extend(unsound);
         }
         if self.is_asked(index, |number| number == ContactNumber::Clearance) {
             result.clearances = interference::of_spaces(job, &rolled.members, &none, rolling, session)?.clearances;

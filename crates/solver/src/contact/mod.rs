@@ -148,6 +148,12 @@ impl ContactProblem {
         ContactProblem { values: values.to_vec(), ..self.clone() }
     }
 
+    /// The same with flanks that go on beyond the ranges of their tools, and a lag beyond its own.
+    fn beyond_ranges(mut self) -> ContactProblem {
+        self.ranges.iter_mut().for_each(|range| *range = range.beyond(0.0));
+        self
+    }
+
     /// The roll, then the values of what the contact is differentiated by.
     fn given(&self, roll: f64) -> impl Iterator<Item = f64> {
         [roll].into_iter().chain(self.values.iter().copied())

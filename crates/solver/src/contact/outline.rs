@@ -7,6 +7,8 @@ const ON: f64 = 1e-9;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
     segments: Vec<OutlineSegment>,
+    /// Whether nothing is known of the body beyond it: then its edges end lines of contact, and do not touch.
+    is_open: bool,
 }
 
 /// A line or an arc of an outline.
@@ -118,7 +120,18 @@ impl Outline {
     /// If there is none.
     pub fn new(segments: Vec<OutlineSegment>) -> Outline {
         assert!(!segments.is_empty(), "an outline has segments");
-        Outline { segments }
+        Outline { segments, is_open: false }
+    }
+
+    /// The same of a body that goes on beyond it: its edges end lines of contact, and do not touch.
+    #[must_use]
+    pub fn open(self) -> Outline {
+        Outline { is_open: true, ..self }
+    }
+
+    /// Whether the body goes on beyond it.
+    pub fn is_open(&self) -> bool {
+        self.is_open
     }
 
     /// Its segments, one after the other.

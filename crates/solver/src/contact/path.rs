@@ -112,7 +112,7 @@ impl ContactProblem {
     }
 
     /// The roll position near a known contact at which the lag is extreme: where its first derivative is zero. `None` where it has not
-    /// different signs at two roll positions.
+    /// different signs at two roll positions, and where the lag is locked.
     pub fn vertex(&self, near: &ContactPoint, between: [f64; 2]) -> Option<ContactPoint> {
         let [mut low, mut high] = between;
         let width = high - low;
@@ -126,7 +126,7 @@ impl ContactProblem {
         for _ in 0..VERTEX_STEPS {
             let step = -at.lag_slopes[0] / at.lag_slopes[1];
             if step.abs() <= SETTLED * width || high - low <= SETTLED * width {
-                return (at.outcome == Outcome::Solved).then_some(at);
+                return (at.outcome == Outcome::Solved && !at.is_locked()).then_some(at);
             }
             if at.lag_slopes[0].signum() == sign {
                 low = at.roll
@@ -146,7 +146,7 @@ impl ContactProblem {
         for _ in 0..VERTEX_STEPS {
             let step = -at.lag_slopes[0] / at.lag_slopes[1];
             if step.abs() <= SETTLED {
-                return (at.outcome == Outcome::Solved).then_some(at);
+                return (at.outcome == Outcome::Solved && !at.is_locked()).then_some(at);
             }
             at = self.followed(&at, at.roll + step)?;
         }

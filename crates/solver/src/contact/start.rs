@@ -42,6 +42,8 @@ pub enum NoContact {
     Locked,
     /// They meet, and no point at which they touch was found from there.
     NotFound,
+    /// They touch along a line, and nothing says where that ends: no point of it is told from the others.
+    Endless,
 }
 
 /// A point of the first flank through which the second passes.
@@ -56,6 +58,13 @@ struct Passing {
 fn rank(point: &ContactPoint, least: f64) -> (bool, bool, bool) {
     let is_contact = matches!(point.state, Some(ContactState::Touching | ContactState::Line));
     (is_contact, point.outcome == Outcome::Solved, point.lag * point.opening.signum() >= least)
+}
+
+impl ContactPoint {
+    /// Whether the lag moves nothing along the normal there, so that what it is, is rounding.
+    pub(super) fn is_locked(&self) -> bool {
+        self.opening.abs() < LOCKED * Vector3::from(self.position).norm().max(1.0)
+    }
 }
 
 impl ContactProblem {

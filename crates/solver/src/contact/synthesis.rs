@@ -4,7 +4,7 @@ use faer::Mat;
 
 use crate::contact::corners::FlankCorners;
 use crate::contact::{ContactChange, ContactPoint, ContactProblem};
-use crate::equations::solution::Range;
+use crate::equations::solution::{Range, verdict};
 use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown, SearchEnd};
 
 /// The search ends where no number changes by more than what is worth so much, mm.
@@ -15,8 +15,12 @@ const SOFT: f64 = 1e-4;
 const STEP: f64 = 1e-5;
 /// What is left where all that is wanted is there, in what is worth 1 mm.
 const LEFT: f64 = 1e-8;
-/// Steps from what a contact is to what it shall be, where one is too long.
-const STEPS: u32 = 8;
+/// The way from what a contact is to what it shall be, where that is too long at once: shares of it that are gone at the most, and at the least
+/// before it ends.
+const LONGEST: f64 = 1.0 / 8.0;
+const SHORTEST: f64 = 1.0 / 256.0;
+/// A number that settings change by less than this share of what they changed it by at the beginning has come to its end.
+const TURNED_BACK: f64 = 1e-3;
 /// An angle of a path that is worth 1 mm, radians.
 const ANGLE: f64 = 0.1;
 /// Of the derivatives of the lag, where it is almost even, a curvature that counts.
@@ -194,6 +198,8 @@ pub struct SynthesizedContact {
     pub vertex: ContactPoint,
     /// The share of the way from what the contact was to what is wanted, which was met; 1 for all of it, met or not.
     pub share: f64,
+    /// The last place on the way at which all was met, with its share, where the way ends before.
+    pub way: Option<(f64, ContactPoint)>,
 }
 
 impl SynthesizedContact {
@@ -209,48 +215,116 @@ impl SynthesizedContact {
 
 impl ContactSynthesis<'_> {
     /// Settings and roll with the least squares: from where they are, or where that does not lead to what is wanted, on the way from what the
-    /// contact is to that. `None` if a number is not there at the start.
+    /// contact is to that. Where neither does, the flanks are taken to go on beyond the ranges of their tools, and the lag beyond its own:
+    /// [`SynthesizedContact::vertex`] tells where they do not. `None` if a number is not there at the start.
     ///
     /// # Panics
     /// If there are not as many settings as the pair has parameters.
     #[must_use]
     pub fn solve(&self) -> Option<SynthesizedContact> {
+        let within = self.walked()?;
+        if within.is_met() {
+            return Some(within);
+        }
+        let problem = self.problem.clone().beyond_ranges();
+        let ContactSynthesis { vertex, wishes, settings, .. } = self.clone();
+        let beyond = ContactSynthesis { problem: &problem, vertex, wishes, settings }.walked();
+        let told = |at: ContactPoint| ContactPoint {
+            outcome: verdict(&at.all_unknowns(), &self.problem.ranges, true, false),
+            ..at
+        };
+        match beyond {
+            Some(beyond) if beyond.is_met() => {
+                Some(SynthesizedContact { vertex: told(beyond.vertex.clone()), ..beyond })
+            }
+            beyond => {
+                let beyond = beyond.and_then(|of| of.way).map(|(share, at)| (share, told(at)));
+                let ways = within.way.clone().into_iter().chain(beyond);
+                Some(SynthesizedContact { way: ways.max_by(|a, b| a.0.total_cmp(&b.0)), ..within })
+            }
+        }
+    }
+
+    /// At once or step by step, within the ranges of the problem.
+    fn walked(&self) -> Option<SynthesizedContact> {
         let direct = self.solve_at_once()?;
         if direct.is_met() {
             return Some(direct);
         }
         let is_whole = |of: &SynthesizedContact| of.share == 1.0;
-        match self.followed() {
-            Some(followed) if is_whole(&followed) && followed.left() < direct.left() => Some(followed),
+        let followed = self.followed();
+        let way = followed.as_ref().filter(|of| !is_whole(of)).map(|of| (of.share, of.vertex.clone()));
+        let found = match followed {
+            Some(followed) if is_whole(&followed) && followed.left() < direct.left() => followed,
             // where no search ends, what was reached on the way is more than where it wandered to
-            Some(followed) if direct.fit.end != SearchEnd::Settled && !is_whole(&followed) => Some(followed),
-            _ => Some(direct),
-        }
+            Some(followed) if direct.fit.end != SearchEnd::Settled && !is_whole(&followed) => followed,
+            _ => direct,
+        };
+        Some(SynthesizedContact { way, ..found })
     }
 
-    /// In steps, each from where the last one ends, as long as they are met.
+    /// In steps, each from where the last one ends, as long as they are met: shorter ones where one is not.
     fn followed(&self) -> Option<SynthesizedContact> {
         let from = self.wishes.iter().map(|wish| wish.of.of(self.vertex)).collect::<Option<Vec<f64>>>()?;
-        let mut at = self.vertex.clone();
-        let mut settings = self.settings.clone();
-        let mut last = None;
-        for step in 1..=STEPS {
-            let share = f64::from(step) / f64::from(STEPS);
+        let is_exact = self.wishes.iter().all(|wish| wish.within.is_none());
+        let mut last: Option<SynthesizedContact> = None;
+        let mut step = LONGEST;
+        while step >= SHORTEST {
+            let gone = last.as_ref().map_or(0.0, |last| last.share);
+            let share = (gone + step).min(1.0);
             let wished =
                 |(wish, from): (&ContactWish, &f64)| ContactWish { wanted: from + share * wish.way(*from), ..*wish };
             let wishes = self.wishes.iter().zip(&from).map(wished).collect();
-            let next = ContactSynthesis { problem: self.problem, vertex: &at, wishes, settings };
-            let Some(found) = next.solve_at_once().filter(|found| found.fit.end == SearchEnd::Settled) else { break };
-            let is_whole = step == STEPS;
-            if !is_whole && !found.is_met() && self.wishes.iter().all(|wish| wish.within.is_none()) {
-                break;
+            let next = match &last {
+                Some(last) => self.from(last, wishes),
+                None => ContactSynthesis { wishes, ..self.clone() },
+            };
+            let found = next.solve_at_once().filter(|found| found.fit.end == SearchEnd::Settled);
+            match found.filter(|found| found.is_met() || !is_exact) {
+                Some(found) if share == 1.0 => return Some(found),
+                Some(found) => (last, step) = (Some(SynthesizedContact { share, ..found }), LONGEST.min(2.0 * step)),
+                None => step *= 0.5,
             }
-            at = found.vertex.clone();
-            settings = self.settings.clone();
-            settings.iter_mut().zip(&found.fit.values).for_each(|(of, value)| of.start = *value);
-            last = Some(SynthesizedContact { share, ..found });
         }
         last
+    }
+
+    /// The same from settings that were found.
+    fn from<'a>(&'a self, found: &'a SynthesizedContact, wishes: Vec<ContactWish>) -> ContactSynthesis<'a> {
+        let mut settings = self.settings.clone();
+        settings.iter_mut().zip(&found.fit.values).for_each(|(of, value)| of.start = *value);
+        ContactSynthesis { problem: self.problem, vertex: &found.vertex, wishes, settings }
+    }
+
+    /// How near one wish can be brought while the others hold, from where settings and contact are and from settings that were found: the nearest of
+    /// what is an end, from which these settings bring it no nearer. `None` where no search comes to one.
+    ///
+    /// # Panics
+    /// If there are not as many settings as the pair has parameters.
+    #[must_use]
+    pub fn nearest(&self, wish: usize, found: &SynthesizedContact) -> Option<ContactPoint> {
+        let begun = self.effects()?.iter().map(|of| of.get(wish).map_or(0.0, |by| by * by)).sum::<f64>().sqrt();
+        let ends = [self.clone(), self.from(found, self.wishes.clone())].into_iter();
+        let ends = ends.filter_map(|of| of.end_of(wish, TURNED_BACK * begun));
+        ends.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, vertex)| vertex)
+    }
+
+    /// How far off a wish stays while the others hold, with the vertex there: `None` unless free settings change it by less than a limit.
+    fn end_of(&self, wish: usize, least: f64) -> Option<(f64, ContactPoint)> {
+        let is_exact = |k: &usize| *k != wish && self.wishes.get(*k).is_none_or(|wish| wish.within.is_none());
+        // those that need not hold exactly stand with the one that gives way, the vertex's own with the exact ones
+        let (exact, soft): (Vec<usize>, Vec<usize>) =
+            (0..=self.wishes.len()).filter(|k| *k != wish).partition(is_exact);
+        let order = [&[wish][..], &soft, &exact].concat();
+        let (fit, vertex) = self.search(exact.len(), |of: Linearized| Linearized {
+            residuals: order.iter().map(|row| of.residuals[*row]).collect(),
+            jacobian: Mat::from_fn(order.len(), of.jacobian.ncols(), |row, k| of.jacobian[(order[row], k)]),
+        })?;
+        let off = fit.residuals[0].abs();
+        let free = fit.gradient.iter().zip(&fit.held).filter(|(_, held)| held.is_none()).map(|(slope, _)| slope);
+        let slope = free.map(|slope| slope * slope).sum::<f64>().sqrt();
+        let holds = fit.exact.iter().all(|off| off.abs() < LEFT);
+        (holds && slope <= least * off).then_some((off, vertex))
     }
 
     /// The same from where settings and contact are, without a way.
@@ -259,18 +333,29 @@ impl ContactSynthesis<'_> {
     /// If there are not as many settings as the pair has parameters.
     #[must_use]
     pub fn solve_at_once(&self) -> Option<SynthesizedContact> {
+        let (fit, vertex) = self.search(0, |linearized| linearized)?;
+        Some(SynthesizedContact { fit, vertex, share: 1.0, way: None })
+    }
+
+    /// With so many residuals, the last ones as they are ordered, that are to be zero.
+    fn search(
+        &self,
+        exact: usize,
+        ordered: impl Fn(Linearized) -> Linearized,
+    ) -> Option<(LeastSquaresFit, ContactPoint)> {
         let unknowns = self.settings.iter().copied().chain([self.roll()]).collect();
         let problem =
-            LeastSquares { unknowns, exact: 0, resolution: 0.0, uses_weak: false, settled: SETTLED, given_up: None };
-        let mut near = self.vertex.clone();
+            LeastSquares { unknowns, exact, resolution: 0.0, uses_weak: false, settled: SETTLED, given_up: None };
+        // a step that is not taken leads to a contact, too
+        let mut tried: Vec<(Vec<f64>, ContactPoint)> = Vec::new();
         let fit = problem.solve(|values| {
-            let (at, linearized) = self.linearized(&near, values)?;
-            near = at;
-            Some(linearized)
+            let near = tried.last().map_or(self.vertex, |(_, at)| at);
+            let (at, linearized) = self.linearized(near, values)?;
+            tried.push((values.to_vec(), at));
+            Some(ordered(linearized))
         })?;
-        let (settings, roll) = (&fit.values[..self.settings.len()], fit.values[self.settings.len()]);
-        let vertex = self.problem.with_values(settings).of_flanks(&near, roll)?;
-        Some(SynthesizedContact { fit, vertex, share: 1.0 })
+        let (_, vertex) = tried.into_iter().rev().find(|(values, _)| *values == fit.values)?;
+        Some((fit, vertex))
     }
 
     /// What each setting changes of the wishes' residuals at the start for its scale, and last the roll; `None` where a number is not there.

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::contact::ContactProblem;
 use crate::contact::edge::FlankEdge;
+use crate::contact::outline::Outline;
 use crate::contact::point::{ContactPoint, ContactState, Member, directions};
 use crate::equations::solution::{Outcome, Solution};
 use crate::equations::system::System;
@@ -48,11 +49,17 @@ impl ContactProblem {
             let (root, members) = self.root(roll, &start, &edges, normal)?;
             let Some(changed) = self.changed(&edges, &members) else {
                 let point = self.point(root, roll, edges, &members);
-                return Some(self.end_of_line(&point).unwrap_or(point));
+                let point = self.end_of_line(&point).unwrap_or(point);
+                return (point.is_of_flanks() || !self.is_beyond_known(&point.edges)).then_some(point);
             };
             (edges, start, normal) = (changed, root.unknowns, members[0].normal);
         }
         None
+    }
+
+    /// Whether one of these edges is where what is known of a flank ends, and not the flank.
+    fn is_beyond_known(&self, edges: &[FlankEdge]) -> bool {
+        edges.iter().any(|edge| self.outlines[edge.member].as_ref().is_some_and(Outline::is_open))
     }
 
     /// Where the line along which flank touches flank at a point ends at an edge, the nearer end: along the line nothing says where the contact

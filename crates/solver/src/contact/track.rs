@@ -158,7 +158,12 @@ impl<'p> Track<'p> {
 
     /// Roll positions at which a place opens the pair more than any contact that is known.
     pub(super) fn missed(&self) -> Vec<f64> {
+        // where a flank is known in part only, it may go on to what touches where no contact is known
+        let is_known = self.problem.outlines.iter().flatten().all(|outline| !outline.is_open());
         let is_open = |(step, [height, opening]): (&isize, &[f64; 2])| {
+            if !is_known && !self.points.contains_key(step) {
+                return None;
+            }
             let carrying = self.carrying(*step).unwrap_or(f64::NEG_INFINITY);
             ((height - carrying) * opening > HIGHER).then(|| self.roll(*step)).flatten()
         };

@@ -138,7 +138,7 @@ fn places(pair: &RollingPair<'_, '_>, member: usize, points: &[SurfacePoint]) ->
         edges: Vec::new(),
     });
     let mut all: Vec<Place> = within.collect();
-    let Some(outline) = outline else { return all };
+    let Some(outline) = outline.filter(|outline| !outline.is_open()) else { return all };
     let count = outline.segments().len();
     // the end of a segment is the beginning of the next one
     let along = |(segment, line): (usize, &OutlineSegment)| {

@@ -84,14 +84,24 @@ impl Condition {
         Some(self.height * self.wish.of.of(at)?)
     }
 
-    /// Whether a contact meets it, exactly or as nearly as it asks for.
-    pub(super) fn is_met(&self, value: f64) -> bool {
+    /// How far a value is from what is wanted.
+    pub(super) fn off(&self, value: f64) -> f64 {
         let off = (value - self.of.value).abs();
-        let off = match self.of.of {
+        match self.of.of {
             // a path has no sense
             ContactQuantity::Path => off.min((off - std::f64::consts::PI).abs()),
             _ => off,
-        };
+        }
+    }
+
+    /// Whether a contact meets it.
+    pub(super) fn is_met_at(&self, at: &ContactPoint) -> bool {
+        self.value(at).is_some_and(|value| self.is_met(value))
+    }
+
+    /// Whether a value meets it, exactly or as nearly as it asks for.
+    pub(super) fn is_met(&self, value: f64) -> bool {
+        let off = self.off(value);
         let most = match self.of.of {
             ContactQuantity::Lengthwise | ContactQuantity::Profilewise => SHARE_MET,
             ContactQuantity::TransmissionError => SHARE * self.of.value.abs(),

@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use flank_chain_dsl::{Contact, Job, WantedContact};
 use flank_expr::Graph;
-use flank_solver::{ContactPoint, RangeEnd, SearchEnd, SynthesizedContact};
+use flank_solver::{ContactPoint, ContactState, RangeEnd, SearchEnd, SynthesizedContact};
 
 use self::conditions::{Condition, conditions};
 use self::problem::Problem;
@@ -32,6 +32,11 @@ use crate::project::units;
 
 /// Positions over a pitch among which the vertex is looked for.
 const POSITIONS: usize = 12;
+/// Derivatives of an error by the roll below this are rounding.
+const EVEN: f64 = 1e-11;
+/// Groups of settings that are tried one after the other where none are named and the first does not do, each of as many as there are conditions at
+/// the most.
+const OTHER_GROUPS: [std::ops::Range<usize>; 5] = [0..2, 1..2, 0..3, 2..3, 3..4];
 
 /// Looks for the settings with which a contact is at its vertex what its job wants, and checks them by the whole contact.
 ///
@@ -53,9 +58,7 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
     let vertex = vertex(job, &mut members)?;
     let conditions = conditions(job, &members, want, &vertex)?;
     let _working = session.begin(format!("looking for the settings of {}", want.name))?;
-    let problem = Problem::new(job, &members, &conditions, &vertex, request)?;
-    let found = problem.solve()?;
-    session.check()?;
+    let (problem, found) = searched(job, (&members, &conditions), &vertex, request, session)?;
     let values: Vec<(String, String)> = problem.values(&found);
     let checked = if values.is_empty() { None } else { Some(Checked::of(request, (job, contact), &values, session)?) };
     let reached = checked.as_ref().and_then(|checked| checked.vertex.as_ref());
@@ -92,6 +95,42 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
     Ok(result)
 }
 
+/// The settings that come nearest to what is wanted. Where they are chosen, and those that do most do not bring it, others are tried beside them and
+/// instead of them.
+///
+/// # Errors
+/// If a setting is not there or cannot be set, the contact is lost, or the work is cancelled.
+fn searched<'p, 'g>(
+    job: &'p Job<'g>,
+    (members, conditions): (&Members<'_, 'g>, &[Condition]),
+    vertex: &'p ContactPoint,
+    request: &SynthesisRequest,
+    session: Session<'_>,
+) -> Result<(Problem<'p, 'g>, SynthesizedContact), Failure> {
+    let mut problem = Problem::new(job, members, conditions, vertex, (request, 0..1))?;
+    let found = problem.solve()?;
+    session.check()?;
+    let is_met = |found: &SynthesizedContact| verdict::is_met(members, conditions, &found.vertex);
+    if is_met(&found) || verdict::is_hopeless(members, conditions) || problem.chosen_of.is_none() {
+        return Ok((problem, found));
+    }
+    for groups in OTHER_GROUPS {
+        let others = Problem::new(job, members, conditions, vertex, (request, groups))?;
+        if others.settings.is_empty() {
+            break;
+        }
+        let with_others = others.solve();
+        session.check()?;
+        if let Ok(found) = with_others
+            && is_met(&found)
+        {
+            return Ok((others, found));
+        }
+        problem.left.retain(|name| others.settings.iter().all(|of| of.name != *name));
+    }
+    Ok((problem, found))
+}
+
 /// # Errors
 /// If no job wants that, or several do.
 fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<(&'j Job<'g>, &'j WantedContact), Failure> {
@@ -126,10 +165,24 @@ fn vertex<'g>(job: &Job<'g>, members: &mut Members<'_, 'g>) -> Result<ContactPoi
     let rolling = Rolling::of_members(job, members, &errors, POSITIONS).map_err(|_| {
         Failure::Unsolved(format!("the flanks of contact `{name}` do not touch as they are, so that nothing is near what is wanted: `flank contact` says why"))
     })?;
+    let is_line = rolling.state() == Some(ContactState::Line);
+    let flanks = || rolling.engagement.points.iter().filter(|point| point.is_of_flanks());
+    let is_even = flanks().all(|point| point.lag_slopes.iter().all(|slope| slope.abs() < EVEN));
     rolling.vertex.ok_or_else(|| {
-        Failure::Unsolved(format!(
-            "the error of contact `{name}` is nowhere extreme as it is: begin with settings at which the flanks touch in a point"
-        ))
+        Failure::Unsolved(match (is_line, is_even) {
+            (true, _) => format!(
+                "the flanks of contact `{name}` touch along a line as they are, and a line has no vertex: crown a flank along the tooth and along \
+                 its profile first, so that they touch in a point"
+            ),
+            (false, true) => format!(
+                "the error of contact `{name}` is even as it is, so that it has no extreme, and the contact no vertex: crown a flank along the \
+                 path of contact first, by its profile or by the roll"
+            ),
+            (false, false) => format!(
+                "the error of contact `{name}` rises or falls all along the flanks as it is, so that the contact has no vertex: begin with settings at \
+                 which the error is extreme where the flanks touch, or roll the pair farther"
+            ),
+        })
     })
 }
 

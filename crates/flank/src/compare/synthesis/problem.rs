@@ -1,9 +1,10 @@
 //! The settings of a contact as unknowns, and what is wanted of it as least squares.
 
+use std::ops::Range;
+
 use flank_chain_dsl::{Job, Parameter};
 use flank_solver::{
-    ContactPoint, ContactProblem, ContactSynthesis, ContactWish, Range, ScaledUnknown, SynthesizedContact,
-    most_independent,
+    ContactPoint, ContactProblem, ContactSynthesis, ContactWish, ScaledUnknown, SynthesizedContact, most_independent,
 };
 
 use super::Condition;
@@ -27,6 +28,8 @@ pub(super) struct Problem<'p, 'g> {
     pub(super) steps: Vec<Option<f64>>,
     /// Of how many the settings were chosen.
     pub(super) chosen_of: Option<usize>,
+    /// Those that change the contact and were not chosen.
+    pub(super) left: Vec<String>,
     /// Those that were named and change nothing.
     idle: Vec<String>,
     unknowns: Vec<ScaledUnknown>,
@@ -36,6 +39,8 @@ pub(super) struct Problem<'p, 'g> {
 }
 
 impl<'p, 'g> Problem<'p, 'g> {
+    /// Where settings are chosen, those of some groups: each does all that those do together which are in none before.
+    ///
     /// # Errors
     /// If a setting is not there or cannot be set, or no setting moves the contact.
     pub(super) fn new(
@@ -43,7 +48,7 @@ impl<'p, 'g> Problem<'p, 'g> {
         members: &Members<'_, 'g>,
         conditions: &[Condition],
         vertex: &'p ContactPoint,
-        request: &SynthesisRequest,
+        (request, groups): (&SynthesisRequest, Range<usize>),
     ) -> Result<Problem<'p, 'g>, Failure> {
         let named = open(job, &request.vary)?;
         if let Some(error) = named.iter().find(|of| of.is_error && !request.vary.is_empty()) {
@@ -69,14 +74,10 @@ impl<'p, 'g> Problem<'p, 'g> {
         let is_named = !request.vary.is_empty();
         let taken = match is_named {
             true => moving.clone(),
-            false => {
-                let all: Vec<Vec<f64>> = moving.iter().map(|k| effects[*k].clone()).collect();
-                let mut chosen: Vec<usize> =
-                    most_independent(&all, &by_roll, OWN).into_iter().map(|k| moving[k]).collect();
-                chosen.sort_unstable();
-                chosen
-            }
+            false => chosen(&moving, &effects, &by_roll, &groups),
         };
+        let is_left = |k: &&usize| !taken.contains(k);
+        let left = moving.iter().filter(is_left).map(|k| settings[*k].name.clone()).collect();
         let idle = (0..settings.len()).filter(|k| is_named && !moving.contains(k));
         let idle = idle.map(|k| settings[k].name.clone()).collect();
         let settings: Vec<&Parameter<'g>> = taken.iter().map(|k| settings[*k]).collect();
@@ -86,6 +87,7 @@ impl<'p, 'g> Problem<'p, 'g> {
         Ok(Problem {
             steps: steps(&settings, &request.round)?,
             chosen_of: (!is_named).then_some(moving.len()),
+            left,
             idle,
             unknowns,
             pair: members.problem_in(job, &settings),
@@ -116,7 +118,7 @@ impl<'p, 'g> Problem<'p, 'g> {
         let mut found = self.with(self.wishes.clone(), &unknowns)?;
         for k in 0..unknowns.len() {
             let Some(step) = self.steps[k] else { continue };
-            let Range { low, high } = unknowns[k].range;
+            let flank_solver::Range { low, high } = unknowns[k].range;
             let whole = (found.fit.values[k] / step).round();
             let inside = whole.max((low / step).ceil()).min((high / step).floor());
             unknowns[k] = held(ScaledUnknown { start: inside * step, ..unknowns[k] });
@@ -125,12 +127,9 @@ impl<'p, 'g> Problem<'p, 'g> {
         Ok(found)
     }
 
-    /// The same where one condition need not hold exactly: as near to it as the others allow.
-    pub(super) fn yielding(&self, condition: usize) -> Option<SynthesizedContact> {
-        let mut wishes = self.wishes.clone();
-        let wanted = wishes[condition].wanted.abs();
-        wishes[condition].within = Some(if wanted > 0.0 { wanted } else { 1.0 });
-        self.synthesis(wishes, &self.unknowns).solve_at_once()
+    /// As near to one condition as the others allow, from the settings of the job or from those that were found; `None` where that is not known.
+    pub(super) fn nearest(&self, condition: usize, found: &SynthesizedContact) -> Option<ContactPoint> {
+        self.synthesis(self.wishes.clone(), &self.unknowns).nearest(condition, found)
     }
 
     /// What each setting does to each condition for its scale, with the roll last; as the pair is.
@@ -152,4 +151,20 @@ impl<'p, 'g> Problem<'p, 'g> {
         let all = self.settings.iter().zip(&found.fit.values);
         all.map(|(of, value)| (of.name.clone(), corrected::value(of.dimension, *value))).collect()
     }
+}
+
+/// Of settings that change a contact, those of some groups, in their order: a group does all that those do together which are in none before.
+fn chosen(moving: &[usize], effects: &[Vec<f64>], by_roll: &[f64], groups: &Range<usize>) -> Vec<usize> {
+    let (mut used, mut chosen): (Vec<usize>, Vec<usize>) = Default::default();
+    for group in 0..groups.end {
+        let open: Vec<usize> = moving.iter().filter(|k| !used.contains(k)).copied().collect();
+        let all: Vec<Vec<f64>> = open.iter().map(|k| effects[*k].clone()).collect();
+        let own: Vec<usize> = most_independent(&all, by_roll, OWN).into_iter().map(|k| open[k]).collect();
+        used.extend(&own);
+        if groups.contains(&group) {
+            chosen.extend(own);
+        }
+    }
+    chosen.sort_unstable();
+    chosen
 }

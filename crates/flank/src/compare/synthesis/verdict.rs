@@ -24,16 +24,14 @@ pub(super) fn judge(
     let mut told = |kind: NotDoneKind, message: String, reasons: Vec<String>| {
         result.not_done.push(NotDone::new(kind, &name, message).with(reasons));
     };
-    let unmet: Vec<&str> = conditions
-        .iter()
-        .filter(|of| !of.value(&found.vertex).is_some_and(|value| of.is_met(value)))
-        .map(|of| of.of.of.name())
-        .collect();
+    let unmet: Vec<&str> =
+        conditions.iter().filter(|of| !of.is_met_at(&found.vertex)).map(|of| of.of.of.name()).collect();
     let mut reasons = Vec::from_iter(off_the_tooth(members, conditions));
     if !unmet.is_empty() {
         let message = format!("{name} is not met: {}", unmet.join(", "));
         if reasons.is_empty() {
-            reasons = why(conditions, problem, found);
+            reasons = why(members, conditions, problem, found);
+            reasons.push(others(problem));
         }
         told(NotDoneKind::NotMet, message, reasons);
         return;
@@ -55,6 +53,28 @@ pub(super) fn judge(
             elsewhere.join(", ")
         );
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, &name, message));
+    }
+}
+
+/// Whether a vertex is one of the pair at which all conditions hold.
+pub(super) fn is_met(members: &Members<'_, '_>, conditions: &[Condition], at: &ContactPoint) -> bool {
+    conditions.iter().all(|of| of.is_met_at(at)) && none_of_flanks(members, at).is_empty()
+}
+
+/// Whether no settings can make it, however many.
+pub(super) fn is_hopeless(members: &Members<'_, '_>, conditions: &[Condition]) -> bool {
+    off_the_tooth(members, conditions).is_some()
+}
+
+/// Which settings were not tried.
+fn others(problem: &Problem<'_, '_>) -> String {
+    match (&problem.left[..], problem.chosen_of) {
+        ([], Some(_)) => {
+            "settings: all of the first flank that change it were tried; those of the second flank and of the mounting were not: option `vary` names them"
+                .to_string()
+        }
+        ([], None) => "settings: others than these may bring it: option `vary` names them".to_string(),
+        (left, _) => format!("settings: not tried, and it may be met with them by option `vary`: {}", left.join(", ")),
     }
 }
 
@@ -80,13 +100,23 @@ fn none_of_flanks(members: &Members<'_, '_>, at: &ContactPoint) -> Vec<String> {
     if let Outcome::Outside { unknown, .. } = at.outcome {
         let own = members.surfaces.iter().flat_map(|surface| surface.unknowns.iter().map(|of| &of.name));
         let name = own.chain([&members.contact.lag.name]).nth(unknown);
-        reasons.extend(name.map(|name| format!("range: `{name}` would have to leave its range")));
+        let told = |name: &String| {
+            format!(
+                "range: `{name}` would have to leave its range: widen it where the tool or the mounting allows that"
+            )
+        };
+        reasons.extend(name.map(told));
     }
     reasons
 }
 
 /// Why conditions are not met.
-fn why(conditions: &[Condition], problem: &Problem<'_, '_>, found: &SynthesizedContact) -> Vec<String> {
+fn why(
+    members: &Members<'_, '_>,
+    conditions: &[Condition],
+    problem: &Problem<'_, '_>,
+    found: &SynthesizedContact,
+) -> Vec<String> {
     let mut reasons = unmoved(conditions, problem);
     let bound = problem.settings.iter().zip(&found.fit.held).enumerate();
     let bound = bound.filter(|(k, (_, held))| held.is_some() && !problem.is_rounded(*k)).map(|(_, (of, _))| of);
@@ -98,17 +128,18 @@ fn why(conditions: &[Condition], problem: &Problem<'_, '_>, found: &SynthesizedC
         reasons.push("steps: settings that are multiples of their steps come no nearer".to_string());
     }
     if reasons.is_empty() {
-        reasons.extend((0..conditions.len()).filter_map(|k| yielding(conditions, problem, k)));
-    }
-    if reasons.is_empty() && found.share < 1.0 {
-        let share = 100.0 * found.share;
-        reasons.push(format!(
-            "way: from what the contact is, all of it together is met up to {share:.0} % of the way to what is wanted, and no farther"
-        ));
+        reasons.extend((0..conditions.len()).filter_map(|k| yielding(conditions, problem, found, k)));
+        if let Some((share, at)) = &found.way {
+            let share = 100.0 * share;
+            reasons.push(format!(
+                "way: from what the contact is, all of it together is met up to {share:.1} % of the way to what is wanted; there the search ended"
+            ));
+            reasons.extend(none_of_flanks(members, at));
+        }
     }
     if reasons.is_empty() && found.fit.end != SearchEnd::Settled {
         reasons.push(
-            "search: it came to no end: on the way to what is wanted the flanks do not touch in a point".to_string(),
+            "search: it came to no end, and ended at what is told as reached: whether more of it can be met is not known".to_string(),
         );
     }
     if reasons.is_empty() {
@@ -135,20 +166,25 @@ fn unmoved(conditions: &[Condition], problem: &Problem<'_, '_>) -> Vec<String> {
     told.collect()
 }
 
-/// What one condition could be if all others hold.
-fn yielding(conditions: &[Condition], problem: &Problem<'_, '_>, k: usize) -> Option<String> {
-    let found = problem.yielding(k)?;
-    let is_met = |of: &Condition| of.value(&found.vertex).is_some_and(|value| of.is_met(value));
-    let others = (0..conditions.len()).filter(|other| *other != k);
-    let value = conditions[k].value(&found.vertex)?;
-    others.map(|other| &conditions[other]).all(is_met).then(|| {
-        let of = &conditions[k];
-        let shown = |value: f64| format!("{:.4} {}", of.shown(value), of.unit()).trim_end().to_string();
-        format!(
-            "{}: with all else as it is wanted it comes to {}, not to {}",
-            of.of.of.name(),
-            shown(value),
-            shown(of.of.value)
-        )
-    })
+/// What one condition could be if all others hold: where the search for that came to an end of it which is no farther off than what was
+/// reached.
+fn yielding(
+    conditions: &[Condition],
+    problem: &Problem<'_, '_>,
+    found: &SynthesizedContact,
+    k: usize,
+) -> Option<String> {
+    let of = &conditions[k];
+    let nearest = problem.nearest(k, found)?;
+    let others: Vec<&Condition> = (0..conditions.len()).filter(|other| *other != k).map(|k| &conditions[k]).collect();
+    let hold = |at: &ContactPoint| others.iter().all(|of| of.is_met_at(at));
+    let value = of.value(&nearest).filter(|value| hold(&nearest) && !of.is_met(*value))?;
+    let reached = of.value(&found.vertex).filter(|_| hold(&found.vertex));
+    let is_farther = |reached: f64| of.off(value) > of.off(reached) * (1.0 + SHARE);
+    if reached.is_some_and(is_farther) {
+        return None;
+    }
+    let shown = |value: f64| format!("{:.4} {}", of.shown(value), of.unit()).trim_end().to_string();
+    let with = if others.is_empty() { "" } else { "with all else as it is wanted " };
+    Some(format!("{}: {with}it comes to {}, not to {}", of.of.of.name(), shown(value), shown(of.of.value)))
 }

@@ -9,7 +9,7 @@ use crate::project::requests::{ContactRequest, JobSelection, MountingError};
 use crate::solve::starts::{self, Asked};
 
 /// Positions of a pitch at which contacts are looked at.
-const POSITIONS: u32 = 24;
+const POSITIONS: u32 = 60;
 
 /// Kinds of lines, in the order of their columns.
 const LINES: [&str; 2] = ["singular line", "contact limit"];
