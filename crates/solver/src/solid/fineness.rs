@@ -188,7 +188,7 @@ impl Off {
     /// In which direction finer cells bring the sides nearer, where they are not near enough: a diagonal is about as far off as sides of both
     /// directions together.
     fn is_across(self, tolerance: f64) -> Option<bool> {
-        (self.most() > tolerance).then(|| self.across > tolerance || self.across >= self.along)
+        (self.most() > tolerance).then_some(self.across > tolerance || self.across >= self.along)
     }
 }
 
