@@ -59,11 +59,16 @@ impl Body {
         if (0..3).any(is_beside) || !around(triangle, 0.0).iter().any(|cell| self.cells.contains_key(cell)) {
             return f64::INFINITY;
         }
-        let [a, b, c] = triangle;
-        let longest = (b - a).norm().max((c - a).norm()).max((c - b).norm());
-        let parts = (longest / spacing).ceil().max(1.0) as usize;
-        let places = (0..=parts).flat_map(|i| (0..=parts - i).map(move |j| (i, j)));
-        let points = places.map(|(i, j)| a + ((b - a) * i as f64 + (c - a) * j as f64) / parts as f64);
+        // lines beside the longest side, each shorter than the one before
+        let side = |k: &usize| (triangle[(k + 1) % 3] - triangle[*k]).norm();
+        let first = (0..3).max_by(|a, b| side(a).total_cmp(&side(b))).expect("three sides");
+        let [a, b, c] = [0, 1, 2].map(|k| triangle[(first + k) % 3]);
+        let longest = (b - a).norm();
+        let height = (b - a).cross(&(c - a)).norm() / longest;
+        let [along, across] = [longest, height].map(|length| (length / spacing).ceil().max(1.0));
+        let shares = |count: f64| (0..=count as usize).map(move |k| k as f64 / count);
+        let bases = shares(along).map(|share| a + (b - a) * share);
+        let points = bases.flat_map(|base| shares(across).map(move |share| base + (c - base) * share));
         points.filter_map(|point| self.distance(point)).fold(f64::INFINITY, f64::min)
     }
 

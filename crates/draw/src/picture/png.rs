@@ -20,17 +20,21 @@ pub(super) fn file(picture: &Picture) -> Result<Vec<u8>, PictureError> {
     let tops: Vec<u32> = (0..height).step_by(BAND as usize).collect();
     let rows: Vec<[f64; 2]> = picture.items.iter().map(|item| rows(item).map(|row| row * picture.unit)).collect();
     let bands = tops.par_iter().map(|&top| {
-        let (first, end) = (top.saturating_sub(BEYOND), height.min(top + BAND + BEYOND));
+        let bottom = height.min(top + BAND);
+        let (first, end) = (top.saturating_sub(BEYOND), height.min(bottom + BEYOND));
         let mut pixels = Pixmap::new(width, end - first)?;
         pixels.fill(Color::WHITE);
         let to_pixels = Transform::from_scale(picture.unit as f32, picture.unit as f32);
         let to_band = to_pixels.post_translate(0.0, -(first as f32));
-        let is_seen = |[from, to]: &[f64; 2]| *from <= f64::from(end) && *to >= f64::from(first);
+        let is_seen = |[from, to]: &[f64; 2]| *from <= f64::from(bottom) && *to >= f64::from(top);
         let seen = picture.items.iter().zip(&rows).filter(|(_, rows)| is_seen(rows));
         seen.for_each(|(item, _)| draw(item, to_band, &mut pixels));
-        let own = pixels.pixels().chunks(width as usize).skip((top - first) as usize).take(BAND as usize);
         // three channels, as the ground is white everywhere
-        Some(own.flatten().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]).collect())
+        let [from, to] = [top, bottom].map(|row| 4 * (row - first) as usize * width as usize);
+        let own = pixels.data()[from..to].chunks_exact(4);
+        let mut colours = Vec::with_capacity(3 * own.len());
+        own.for_each(|pixel| colours.extend_from_slice(&pixel[..3]));
+        Some(colours)
     });
     let bands = bands.collect::<Option<Vec<Vec<u8>>>>().filter(|_| width > 0 && height > 0);
     let colours = bands.ok_or(PictureError::TooLarge { width, height })?.concat();

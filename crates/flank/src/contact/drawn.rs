@@ -250,8 +250,10 @@ fn curves(members: &Members<'_, '_>, rolling: &Rolling, compound: f64, transfers
     let mut composite: Vec<[f64; 2]> = steps().filter_map(|step| Some(place(step, carried(step)?))).collect();
     composite.extend(kinks.iter().filter_map(|roll| kink(*roll)));
     composite.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    let ends =
+    let drawn =
         composite.iter().fold([f64::MAX, f64::MIN], |[low, high], [_, error]| [low.min(*error), high.max(*error)]);
+    // extremes lie between the positions that are drawn
+    let ends = rolling.span(transfers).map_or(drawn, |span| span.map(error));
     let is_shown = |point: &ContactPoint, step: isize| {
         let behind = carried(step).map_or(0.0, |carried| (point.lag - carried).abs());
         fine(lag.dimension, behind)
