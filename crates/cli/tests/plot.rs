@@ -162,6 +162,23 @@ fn a_comparison_is_a_map_and_a_topography() {
     assert!(text(&run.stderr).contains("what fits with --reference: deviation, topography"), "{}", text(&run.stderr));
 }
 
+/// The teeth of a face gear stand along its axis: no circle about that is the one of their tips. Those of a bevel gear of 73 degrees have circles.
+#[test]
+fn circles_of_a_section_are_those_of_tips_and_roots() {
+    let out = folder("plot_circles");
+    let section = |spec: &str, job: &str| {
+        let run = flank(&["plot", spec, "--what", "section", "--out", out.to_str().expect("a plain path")]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        std::fs::read_to_string(out.join(format!("{job}.section.svg"))).expect("drawn")
+    };
+    assert!(!section("specs/hobbing/face_gear.chain", "face_gear").contains(" circle, "));
+    for (spec, job) in [("specs/hobbing/spur_gear.chain", "spur_gear"), ("specs/bevel/gear_19x62.chain", "gear_19x62")]
+    {
+        let drawn = section(spec, job);
+        assert!(drawn.contains("tip circle, ") && drawn.contains("root circle, "), "{job}");
+    }
+}
+
 #[test]
 fn what_does_not_fit_says_why_and_what_does() {
     let cases = [

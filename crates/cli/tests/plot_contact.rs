@@ -42,6 +42,20 @@ fn each_kind_says_what_the_tester_shows() {
     assert!(of("path").contains("path of contact of drive_side"));
 }
 
+/// Extremes lie between the positions that are drawn: of 12 the largest of a worm pair's errors is 11 % more than what they show.
+#[test]
+fn the_error_of_the_picture_is_that_of_the_pair() {
+    let spec = "specs/pairs/worm_and_wheel.chain";
+    let out = folder("plot-contact-worm");
+    let to = out.to_str().expect("a plain path");
+    let told = flank(&["contact", spec, "--positions", "12", "--no-picture", "--json", "--out", to]);
+    let told: serde_json::Value = serde_json::from_slice(&told.stdout).expect("JSON");
+    let peak = told["error"]["peak_to_peak"].as_f64().expect("a number");
+    assert!(flank(&["plot", spec, "--what", "error", "--out", to]).status.success());
+    let drawn = std::fs::read_to_string(out.join("worm_and_wheel.error.svg")).expect("drawn");
+    assert!(drawn.contains(&format!("peak to peak {peak:.3} \u{b5}rad")), "{peak}");
+}
+
 #[test]
 fn drive_and_coast_stand_side_by_side() {
     let both = drawn("plot-contact-both", &[BOTH_SIDES, "--what", "pattern"], "spur_pair.pattern");

@@ -252,6 +252,21 @@ fn what_was_not_checked_depends_on_the_job() {
     assert!(!real.lines().any(|line| line.starts_with("Roughness") && line.contains("lower_flank")), "{real}");
 }
 
+/// A report that has the contact of a pair does not say that it was not looked at.
+#[test]
+fn what_no_report_checks_depends_on_contacts() {
+    let out = folder("report_of_a_pair");
+    let of = |spec: &str| {
+        let run = flank(&["report", spec, "--json", "--out", out.to_str().expect("a plain path")]);
+        let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        (told["contacts"].as_array().expect("contacts").len(), told["not_checked"]["by_no_report"].to_string())
+    };
+    let (none, alone) = of("specs/hobbing/spur_gear.chain");
+    assert!(none == 0 && alone.contains("Meshing with a mating gear"), "{alone}");
+    let (some, pair) = of("specs/pairs/spur_pair.chain");
+    assert!(some == 2 && !pair.contains("Meshing") && pair.contains("Contact under load"), "{pair}");
+}
+
 #[test]
 fn the_same_job_gives_the_same_bytes() {
     let [first, second] = ["first", "second"].map(|name| {

@@ -2,6 +2,7 @@
 
 mod support;
 
+use std::path::PathBuf;
 use std::process::Command;
 
 use serde_json::Value;
@@ -28,6 +29,14 @@ fn python_with(module: &str, package: &str) -> Option<String> {
     has_it.then_some(python)
 }
 
+/// What a script of `readers` says of files.
+fn read_by(python: &str, script: &str, files: &[PathBuf]) -> String {
+    let script = top().join("crates/cli/tests/readers").join(script);
+    let run = Command::new(python).arg(script).args(files).output().expect("it has just been run");
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    text(&run.stdout).to_string()
+}
+
 /// Each face against exact points that it was not made of, by a reader of others.
 #[test]
 fn opencascade_finds_the_exact_points_on_the_faces() {
@@ -48,13 +57,7 @@ fn opencascade_finds_the_exact_points_on_the_faces() {
     let solved: Value = serde_json::from_slice(&run.stdout).expect("JSON");
     let points = out.join("other");
     assert!(flank(&["solve", &other, "--out", points.to_str().expect("plain"), "--no-picture"]).status.success());
-    let run = Command::new(&python)
-        .arg(top().join("crates/cli/tests/readers/step.py"))
-        .args([out.join("pinion_19x62.step"), points.join("pinion_19x62.csv")])
-        .output()
-        .expect("it has just been run");
-    assert!(run.status.success(), "{}", text(&run.stderr));
-    let told = text(&run.stdout);
+    let told = read_by(&python, "step.py", &[out.join("pinion_19x62.step"), points.join("pinion_19x62.csv")]);
     let surfaces: Vec<Value> = told.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!(surfaces.len(), 5, "{told}");
     for (k, surface) in surfaces.iter().enumerate() {
@@ -85,13 +88,8 @@ fn opencascade_finds_one_closed_body() {
         let body = &built["solids"][0];
         assert!(body["step_deviation_mm"].as_f64().expect("measured") <= 1e-4, "{body}");
         assert!(flank(&["solve", spec, "--out", to, "--no-picture"]).status.success());
-        let run = Command::new(&python)
-            .arg(top().join("crates/cli/tests/readers/solid.py"))
-            .args([out.join(format!("{name}.step")), out.join(format!("{name}.csv"))])
-            .output()
-            .expect("it has just been run");
-        assert!(run.status.success(), "{}", text(&run.stderr));
-        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let told = read_by(&python, "solid.py", &[out.join(format!("{name}.step")), out.join(format!("{name}.csv"))]);
+        let found: Value = serde_json::from_str(&told).expect("JSON");
         let count = |key: &str| found[key].as_i64().expect("a count");
         assert_eq!((count("solids"), count("shapes"), count("open_edges")), (1, 1, 0), "{found}");
         assert_eq!(count("vertices") - count("edges") + count("faces"), 0, "{found}");
@@ -127,13 +125,8 @@ fn opencascade_finds_one_closed_body_of_each_part() {
         assert!(run.status.success(), "{}", text(&run.stderr));
         let built: Value = serde_json::from_slice(&run.stdout).expect("JSON");
         let body = &built["solids"][0];
-        let run = Command::new(&python)
-            .arg(top().join("crates/cli/tests/readers/solid.py"))
-            .arg(out.join(format!("{name}.step")))
-            .output()
-            .expect("it has just been run");
-        assert!(run.status.success(), "{}", text(&run.stderr));
-        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let told = read_by(&python, "solid.py", &[out.join(format!("{name}.step"))]);
+        let found: Value = serde_json::from_str(&told).expect("JSON");
         let count = |key: &str| found[key].as_i64().expect("a count");
         assert_eq!((count("solids"), count("shapes"), count("open_edges")), (1, 1, 0), "{name} {part}: {found}");
         let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
@@ -171,13 +164,8 @@ fn opencascade_finds_nothing_to_heal() {
         assert!(run.status.success(), "{}", text(&run.stderr));
         let built: Value = serde_json::from_slice(&run.stdout).expect("JSON");
         let job = name.split('/').next_back().expect("a name");
-        let run = Command::new(&python)
-            .arg(top().join("crates/cli/tests/readers/strict.py"))
-            .arg(out.join(format!("{job}.step")))
-            .output()
-            .expect("it has just been run");
-        assert!(run.status.success(), "{}", text(&run.stderr));
-        let found: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let told = read_by(&python, "strict.py", &[out.join(format!("{job}.step"))]);
+        let found: Value = serde_json::from_str(&told).expect("JSON");
         let number = |of: &Value, key: &str| of[key].as_f64().expect("a number");
         assert!(found["valid"] == true && found["solids"] == 1, "{name} {part}: {found}");
         assert!(number(&found, "tolerance") <= tolerance, "{name} {part} {step}: {found}");

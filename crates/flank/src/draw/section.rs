@@ -14,6 +14,9 @@ use crate::project::units;
 use crate::solve::bound;
 
 /// Positions of the tool in all, and of each surface at least.
+/// Where teeth are higher along the axis than this share of their height across it, their tips and roots have no circles of their own: those of
+/// bevel gears of 84 degrees and less have.
+const RADIAL: f64 = 0.1;
 const POSITIONS: usize = 14;
 const LEAST_POSITIONS: usize = 3;
 /// Surfaces at most at which the tool is drawn: in each position all tools are cut, which for each surface would grow with their square.
@@ -145,7 +148,8 @@ impl Cut {
         }
     }
 
-    /// Circles about the axis through the highest and the deepest point of the lines.
+    /// Circles about the axis through the highest and the deepest point of the lines; none where teeth stand along the axis, as those of face
+    /// gears do: there both circles would lie beside each other, and neither is that of tips or roots.
     fn circles(&self, subject: &Subject<'_, '_>, mates: &[usize], lines: &[Vec<SurfacePoint>]) -> Vec<SectionCircle> {
         let points = mates.iter().zip(lines).flat_map(|(at, line)| line.iter().map(move |point| (*at, point)));
         let places: Vec<(usize, [f64; 2])> = points.map(|(at, point)| (at, self.0.in_axes(point.position))).collect();
@@ -155,6 +159,15 @@ impl Cut {
         };
         let across = ends(0);
         let [low, high] = ends(1);
+        let rho = |up: f64| {
+            let (_, place) = places.iter().find(|(_, place)| place[1] == up)?;
+            let [x, y, _] = self.position(*place);
+            Some(x.hypot(y))
+        };
+        if rho(high).zip(rho(low)).is_some_and(|(high_rho, low_rho)| (high_rho - low_rho).abs() < RADIAL * (high - low))
+        {
+            return Vec::new();
+        }
         [("tip circle", high), ("root circle", low)]
             .into_iter()
             .filter_map(|(name, up)| {

@@ -1,0 +1,151 @@
+//! Thickness, span and balls of closed forms.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use flank::{Answer, NotDoneKind};
+
+use crate::asked::{Asked, BODIES};
+use crate::spur::{ALPHA, Spur, arcinv};
+
+/// Thickness, span and dimension over balls of a helical involute gear (ISO 21771), and the circles on which the rack's own corners leave it.
+#[test]
+fn gauges_find_what_an_involute_has() {
+    let inv = |angle: f64| angle.tan() - angle;
+    for (teeth, shift, helix) in [(24.0, 0.2, 0.0), (24.0, 0.2, 15.0), (31.0, -0.1, -28.0)] {
+        let set =
+            [("helix_angle", &*format!("{helix} deg")), ("teeth", &*teeth.to_string()), ("shift", &*shift.to_string())];
+        let (body, _) = Asked::new(BODIES, "helical", &set).only();
+        let beta = f64::to_radians(helix);
+        let (radius, transverse) = (1.5 * teeth / beta.cos(), (ALPHA.tan() / beta.cos()).atan());
+        let base = radius * transverse.cos();
+        let gauges = &body.gauges;
+        let near = |found: f64, exact: f64, what: &str| {
+            assert!((found - exact).abs() < 2e-8, "{what} of {teeth} teeth at {helix} degrees: {found}, not {exact}");
+        };
+        near(gauges.tip_diameter_mm.expect("round"), 2.0 * (radius + (1.0 + shift) * 3.0), "tip");
+        near(gauges.root_diameter_mm.expect("round"), 2.0 * (radius - (1.25 - shift) * 3.0), "root");
+        // where the rounding of the rack's tip begins
+        let depth = 3.0 * (1.25 - 0.38 * (1.0 - ALPHA.sin()) - shift);
+        let form = base.hypot(radius * transverse.sin() - depth / transverse.sin());
+        gauges.form_diameters_mm.expect("round").iter().for_each(|found| near(*found, 2.0 * form, "form diameter"));
+        // half the tooth's angle on the reference circle
+        let half = (FRAC_PI_2 + 2.0 * shift * ALPHA.tan()) / teeth;
+        assert_eq!(gauges.thickness.len(), 5);
+        for found in &gauges.thickness {
+            let diameter = found.diameter_mm.expect("round");
+            let at = (2.0 * base / diameter).acos();
+            let angle = 2.0 * (half + inv(transverse) - inv(at));
+            near(found.arc_mm, 0.5 * diameter * angle, "thickness");
+            // the shortest way between the two lines in which the flanks meet the cylinder: one is by z the other turned
+            let lead = radius / beta.tan();
+            let turned = |z: f64| angle - z.abs() / lead.abs();
+            let apart = |z: f64| (diameter * (0.5 * turned(z)).sin()).hypot(z);
+            let (mut low, mut high) = (0.0, 0.5 * diameter * angle);
+            while high - low > 1e-9 {
+                let [a, b] = [(2.0 * low + high) / 3.0, (low + 2.0 * high) / 3.0];
+                if apart(a) < apart(b) { high = b } else { low = a }
+            }
+            near(found.chord_mm.expect("within the face"), apart(low), "chord");
+            let height = 0.5 * (gauges.tip_diameter_mm.expect("round") - diameter * (0.5 * turned(low)).cos());
+            near(found.chord_height_mm.expect("within the face"), height, "height");
+        }
+        assert!(gauges.spans.len() > 1, "{:?}", gauges.spans);
+        for span in &gauges.spans {
+            let across = (f64::from(span.teeth) - 0.5) * PI + teeth * inv(transverse);
+            near(span.width_mm, 3.0 * ALPHA.cos() * across + 6.0 * shift * ALPHA.sin(), "span");
+        }
+        let balls = gauges.balls.as_ref().expect("one touches");
+        let wanted = inv(transverse) + balls.ball_mm / (3.0 * teeth * ALPHA.cos()) + half - PI / teeth;
+        let centre = base / arcinv(wanted).cos();
+        let across = if teeth % 2.0 == 0.0 { 1.0 } else { (FRAC_PI_2 / teeth).cos() };
+        near(balls.over_balls_mm, 2.0 * centre * across + balls.ball_mm, "balls");
+    }
+}
+
+/// A ball as wide as the space is square to its flanks touches also where these lie aslant; one that does not is told.
+#[test]
+fn balls_touch_steep_helices_and_those_that_do_not_are_told() {
+    let inv = |angle: f64| angle.tan() - angle;
+    let set = [("helix_angle", "60 deg"), ("teeth", "11"), ("shift", "0.75 mm")];
+    let asked = || Asked::new("specs/bodies/helical_gear_body.chain", "helical_gear_body", &set);
+    let (body, _) = asked().only();
+    let transverse = (2.0 * ALPHA.tan()).atan();
+    let base = 33.0 * transverse.cos();
+    let half = (FRAC_PI_2 + 0.5 * ALPHA.tan()) / 11.0;
+    let balls = body.gauges.balls.as_ref().expect("one touches");
+    let wanted = inv(transverse) + balls.ball_mm / (33.0 * ALPHA.cos()) + half - PI / 11.0;
+    let exact = 2.0 * base / arcinv(wanted).cos() * (FRAC_PI_2 / 11.0).cos() + balls.ball_mm;
+    assert!((balls.over_balls_mm - exact).abs() < 2e-8, "{balls:?} {exact}");
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = Asked { ball: Some(30.0), ..asked() }.built(folder.path());
+    assert!(result.solids[0].gauges.balls.is_none());
+    let told: Vec<&str> = result.not_done().iter().map(|missing| missing.message.as_str()).collect();
+    assert_eq!(told, ["balls of 30 mm do not touch both flanks of a space of `gear` half-way along"]);
+}
+
+/// Fillets that are deeper than what they leave of the flanks: form diameter, span and balls are still the flanks'.
+#[test]
+fn gauges_touch_the_flank_however_deep_the_fillet_is() {
+    let inv = |angle: f64| angle.tan() - angle;
+    for (teeth, shift) in [(20.0, -0.5), (14.0, -0.4)] {
+        let set = [("helix_angle", "0 deg"), ("teeth", &*teeth.to_string()), ("shift", &*shift.to_string())];
+        let (body, _) = Asked::new(BODIES, "helical", &[&set[..], &[("bore", "5 mm")]].concat()).only();
+        let (spur, gauges) = (Spur { module: 3.0, teeth, shift, rounding: 0.38 }, &body.gauges);
+        let (_, form) = spur.undercut();
+        let [root, tip] = [spur.radius() - (1.25 - shift) * 3.0, spur.radius() + (1.0 + shift) * 3.0];
+        assert!(form - root > tip - form, "the fillet is the deeper one: {root} {form} {tip}");
+        let near = |found: f64, exact: f64, what: &str| {
+            assert!((found - exact).abs() < 2e-7, "{what} of {teeth} teeth, shift {shift}: {found}, not {exact}");
+        };
+        gauges.form_diameters_mm.expect("round").iter().for_each(|found| near(*found, 2.0 * form, "form diameter"));
+        let base = spur.radius() * ALPHA.cos();
+        for span in &gauges.spans {
+            let across = (f64::from(span.teeth) - 0.5) * PI + teeth * inv(ALPHA);
+            near(span.width_mm, 3.0 * ALPHA.cos() * across + 6.0 * shift * ALPHA.sin(), "span");
+            span.diameters_mm.iter().for_each(|at| assert!(0.5 * at > form, "touches the flank: {span:?}"));
+        }
+        let touching = |count: f64| {
+            base.hypot(
+                0.5 * (3.0 * ALPHA.cos() * ((count - 0.5) * PI + teeth * inv(ALPHA)) + 6.0 * shift * ALPHA.sin()),
+            )
+        };
+        let wanted = (1..=7).filter(|k| (form..tip).contains(&touching(f64::from(*k)))).count();
+        assert_eq!(gauges.spans.len(), wanted, "{:?}", gauges.spans);
+        let balls = gauges.balls.as_ref().expect("one touches");
+        let half = (FRAC_PI_2 + 2.0 * shift * ALPHA.tan()) / teeth;
+        let wanted = inv(ALPHA) + balls.ball_mm / (3.0 * teeth * ALPHA.cos()) + half - PI / teeth;
+        near(balls.over_balls_mm, 2.0 * base / arcinv(wanted).cos() + balls.ball_mm, "balls");
+    }
+}
+
+/// Balls between two pins of a ring, by the distance of their centres, which stay clear of the ground that the pins stand out of: the program's
+/// own choice does, and another one is refused with how deep it would lie.
+#[test]
+fn balls_stay_clear_of_the_ground_between_flanks() {
+    let asked =
+        |ball: Option<f64>| Asked { ball, ..Asked::new("specs/bodies/pin_ring_body.chain", "pin_ring_body", &[]) };
+    let (ring, pin, half) = (60.0, 6.0, PI / 12.0);
+    let ground = f64::hypot(ring, pin);
+    let centre = |ball: f64| {
+        let apart = pin + 0.5 * ball;
+        ring * half.cos() - (apart * apart - (ring * half.sin()).powi(2)).sqrt()
+    };
+    let balls = asked(None).only().0.gauges.balls.expect("one fits");
+    let near = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-7, "{found}, not {exact}");
+    near(balls.over_balls_mm, 2.0 * centre(balls.ball_mm) - balls.ball_mm);
+    assert!(centre(balls.ball_mm) + 0.5 * balls.ball_mm < ground, "{balls:?}");
+    let refused = |ball: f64| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let result = asked(Some(ball)).built(folder.path());
+        assert!(result.solids[0].gauges.balls.is_none() && result.not_done()[0].kind == NotDoneKind::NoBall);
+        result.not_done()[0].message.clone()
+    };
+    let deep = centre(20.5) + 10.25 - ground;
+    assert!(refused(20.5).ends_with(&format!("would lie {deep:.4} mm deep in the steel of `ground`")), "{deep}");
+    let set = [("pins", "3")];
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = Asked { set: &set, ..asked(Some(98.25)) }.built(folder.path());
+    assert!(result.not_done()[0].message.ends_with("in opposite spaces of `ring` would lie in each other"), "{result}");
+    let none = Asked { set: &set, ..asked(None) }.only().0.gauges.balls;
+    assert!(none.as_ref().is_none_or(|balls| balls.over_balls_mm > 0.0), "{none:?}");
+}

@@ -1,0 +1,9 @@
+//! Bodies: closed, on the exact surfaces, with the volume of closed forms.
+
+mod asked;
+mod gauges;
+mod meshes;
+mod parts;
+mod refused;
+mod spur;
+mod volumes;
