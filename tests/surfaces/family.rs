@@ -1,6 +1,6 @@
 //! Surfaces that are compiled once for many values of their settings: the same as those that are derived anew with these values.
 
-use flank_chain_dsl::{Job, GeneratedSurface, Parameter, Sample};
+use flank_chain_dsl::{GeneratedSurface, Job, Parameter, Sample};
 use flank_expr::{Expr, Graph};
 use flank_solver::{BoundSurface, Outcome, Range, SurfaceFamily, SurfacePoint};
 use flank_tests::{difference, followed, jobs, problem, shipped};

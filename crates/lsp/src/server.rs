@@ -32,6 +32,10 @@ const SILENCE: Duration = Duration::from_millis(80);
 const HEAD_START: Duration = Duration::from_millis(40);
 /// A picture that follows changes, not only saves, waits for so long.
 const PICTURE_SILENCE: Duration = Duration::from_millis(300);
+/// What else reads a changed text is compiled once the editor has been quiet for so long: on few processors it would be in the way of answers. Nor does it wait longer
+/// than this.
+const CALM: Duration = Duration::from_millis(100);
+const PATIENCE: Duration = Duration::from_secs(2);
 /// Bytes of stack of a thread that compiles: as many as the main thread of a program has.
 const STACK: usize = 16 << 20;
 /// Threads that answer, and those that compile what was changed: one spec after the other, and beside it the one that is typed in.
@@ -115,6 +119,9 @@ pub(super) struct Server<W> {
     /// Those whose time has come; how many are being compiled.
     ready: BTreeSet<PathBuf>,
     compiling: usize,
+    /// When the editor was last heard of, and since when specs that nobody types in wait.
+    heard_at: Instant,
+    waits_since: Instant,
     /// What was changed last, and what the editor shows: their own findings come first.
     edited: Option<PathBuf>,
     focused: Option<PathBuf>,
@@ -150,6 +157,8 @@ impl<W: Write> Server<W> {
             ahead: None,
             ready: BTreeSet::new(),
             compiling: 0,
+            heard_at: Instant::now(),
+            waits_since: Instant::now(),
             edited: None,
             focused: None,
             picture_at: None,
@@ -169,7 +178,7 @@ impl<W: Write> Server<W> {
         loop {
             let now = Instant::now();
             let picture_at = self.picture_at.as_ref().map(|(at, _)| *at);
-            let next = [self.due_at, self.ahead_at, picture_at].into_iter().flatten().min();
+            let next = [self.due_at, self.ahead_at, picture_at, self.calm_at()].into_iter().flatten().min();
             let event = match next {
                 Some(at) if at <= now => {
                     self.wake(now);
@@ -190,6 +199,9 @@ impl<W: Write> Server<W> {
     }
 
     fn take(&mut self, event: Event) -> io::Result<()> {
+        if matches!(event, Event::Message(_)) {
+            self.heard_at = Instant::now();
+        }
         match event {
             Event::Message(Message::Request(request)) => self.request(request),
             Event::Message(Message::Notification(notification)) => self.notification(notification),
@@ -212,7 +224,7 @@ impl<W: Write> Server<W> {
                 let is_now = self.documents.get(&spec).is_some_and(|document| document.version == version);
                 self.ahead.take_if(|ahead| is_now && *ahead == spec);
                 let told = analysis.map_or(Ok(()), |analysis| self.analysed(&spec, version, &analysis));
-                self.compile();
+                self.compile(Instant::now());
                 told
             }
             Event::Solved(outcome) => self.solved(outcome),
@@ -469,24 +481,37 @@ impl<W: Write> Server<W> {
         }
         if self.due_at.is_some_and(|at| at <= now) {
             self.due_at = None;
+            if self.ready.is_empty() {
+                self.waits_since = now;
+            }
             self.ready.append(&mut self.due);
-            self.compile();
+            self.compile(now);
+        }
+        if self.calm_at().is_some_and(|at| at <= now) {
+            self.compile(now);
         }
         if let Some((_, path)) = self.picture_at.take_if(|(at, _)| *at <= now) {
             self.show_picture(&path);
         }
     }
 
-    /// Compiles what is ready: whoever types does not wait for all that uses a text.
-    fn compile(&mut self) {
+    /// When specs that nobody types in may be compiled, if some wait and none is being compiled.
+    fn calm_at(&self) -> Option<Instant> {
+        let waits = !self.ready.is_empty() && self.compiling == 0;
+        waits.then(|| (self.heard_at + CALM).min(self.waits_since + PATIENCE))
+    }
+
+    /// Compiles what is ready: whoever types does not wait for all that uses a text, nor whoever asks.
+    fn compile(&mut self, now: Instant) {
         loop {
             let is_ready = |spec: &Option<PathBuf>| spec.clone().filter(|spec| self.ready.contains(spec));
-            let edited = is_ready(&self.edited);
-            if self.compiling >= if edited.is_some() { COMPILING } else { 1 } {
-                return;
+            let edited = is_ready(&self.edited).filter(|_| self.compiling < COMPILING);
+            let is_calm = self.calm_at().is_some_and(|at| at <= now);
+            let rest = || is_ready(&self.focused).or_else(|| self.ready.first().cloned()).filter(|_| is_calm);
+            let Some(spec) = edited.clone().or_else(rest) else { return };
+            if edited.is_none() {
+                self.waits_since = now;
             }
-            let next = edited.or_else(|| is_ready(&self.focused));
-            let Some(spec) = next.or_else(|| self.ready.first().cloned()) else { return };
             self.ready.remove(&spec);
             if self.ahead.as_ref() != Some(&spec) {
                 self.begin(&spec);
