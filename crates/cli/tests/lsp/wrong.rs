@@ -1,5 +1,7 @@
 //! What no editor should do: the server says so, loses nothing, and goes on.
 
+use std::time::{Duration, Instant};
+
 use serde_json::{Value, json};
 
 use crate::client::Client;
@@ -97,6 +99,31 @@ fn an_exit_without_shutdown_and_an_editor_that_vanishes_end_it() {
     assert_eq!(client.child.wait().expect("it ends").code(), Some(1));
     assert_eq!(Client::start().vanish(), Some(1));
     assert_eq!(Client::silent().vanish(), Some(1));
+}
+
+#[test]
+fn an_editor_that_never_stops_asking_hears_of_what_uses_a_text() {
+    let mut client = Client::start();
+    let [machine, reader] = ["machine", "reader"].map(|name| format!("file:///nowhere/{name}.chain"));
+    client.open(&machine, SPEC);
+    client.open(
+        &reader,
+        "use \"machine.chain\"\n\nmachine longer extends lathe {\n    frame beside in work = rotate_z(10 deg)\n}\n",
+    );
+    assert!(client.findings(&machine).diagnostics.is_empty());
+    assert!(client.findings(&reader).diagnostics.is_empty());
+    client.change(&machine, json!([{ "text": SPEC.replace("frame work", "frame job") }]));
+    let place = json!({ "textDocument": { "uri": machine }, "position": { "line": 1, "character": 10 } });
+    let end = Instant::now() + Duration::from_secs(60);
+    let told = loop {
+        client.ask("textDocument/hover", place.clone()).expect("an answer");
+        if let Some(told) = client.told.remove(&reader) {
+            break told;
+        }
+        assert!(Instant::now() < end, "nothing is told of what uses the text");
+    };
+    assert!(!told.diagnostics.is_empty(), "the frame has another name");
+    assert_eq!(client.end(), Some(0));
 }
 
 #[test]
