@@ -33,6 +33,9 @@ pub struct FootSearch {
     settings: usize,
 }
 
+/// So few points take less time than other threads take to wake.
+const FEW: usize = 4 * LANES;
+
 /// What one tile after the other is solved with.
 struct Evaluators<'s> {
     newton: LaneNewton<'s>,
@@ -133,6 +136,11 @@ impl FootSearch {
     /// If there are not as many starts as points.
     pub fn feet(&self, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
         assert_eq!(points.len(), near.len(), "a start for each point");
+        if points.len() <= FEW {
+            let mut evaluators = Evaluators::new(self);
+            let tiles = points.chunks(LANES).zip(near.chunks(LANES));
+            return tiles.flat_map(|(points, near)| self.tile(&mut evaluators, points, near)).collect();
+        }
         let tiles = points.par_chunks(LANES).zip(near.par_chunks(LANES));
         let found: Vec<Vec<Option<Foot>>> = tiles
             .map_init(|| Evaluators::new(self), |evaluators, (points, near)| self.tile(evaluators, points, near))
