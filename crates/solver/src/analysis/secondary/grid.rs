@@ -61,7 +61,15 @@ impl SecondaryCutting {
     /// # Panics
     /// If there are not `counts[0] · counts[1]` points.
     pub fn judge(&self, points: &mut [SurfacePoint], counts: [usize; 2]) -> Judged {
-        self.judged(points, counts, None)
+        self.judged(points, counts, (None, None))
+    }
+
+    /// The same where the verdicts on some points alone are wanted, by their numbers: of a small grid the others are left as they are.
+    ///
+    /// # Panics
+    /// As for [`SecondaryCutting::judge`], and if there is no point of a number.
+    pub fn judge_some(&self, points: &mut [SurfacePoint], counts: [usize; 2], wanted: &[usize]) -> Judged {
+        self.judged(points, counts, (None, Some(wanted)))
     }
 
     /// The same of points that another tool generates, by one that also cuts the work, along motions of its own: marked as
@@ -70,11 +78,16 @@ impl SecondaryCutting {
     /// # Panics
     /// As for [`SecondaryCutting::judge`].
     pub fn judge_of_another(&self, points: &mut [SurfacePoint], counts: [usize; 2], number: usize) -> Judged {
-        if self.ranges.len() == 1 { self.judged(points, counts, Some(number)) } else { Judged::default() }
+        if self.ranges.len() == 1 { self.judged(points, counts, (Some(number), None)) } else { Judged::default() }
     }
 
     /// `of_another` is the number by which the tool is named if it does not generate the points.
-    fn judged(&self, points: &mut [SurfacePoint], counts: [usize; 2], of_another: Option<usize>) -> Judged {
+    fn judged(
+        &self,
+        points: &mut [SurfacePoint],
+        counts: [usize; 2],
+        (of_another, wanted): (Option<usize>, Option<&[usize]>),
+    ) -> Judged {
         assert_eq!(points.len(), counts[0] * counts[1], "one point for each place of the grid");
         let mut judged = Judged::default();
         let is_solved = |point: &&SurfacePoint| point.outcome == Outcome::Solved;
@@ -86,7 +99,7 @@ impl SecondaryCutting {
         }
         let judge = Judge::new(self, middle, of_another.is_none());
         let mut spread = Spread { judge, points, counts, verdicts: vec![None; points.len()], is_spent: false };
-        spread.all();
+        spread.all(wanted);
         let Spread { verdicts, is_spent, .. } = spread;
         for (point, verdict) in points.iter_mut().zip(verdicts) {
             let Some(Some(cut)) = verdict else { continue };
@@ -184,10 +197,10 @@ struct Spread<'p, 'c> {
 }
 
 impl Spread<'_, '_> {
-    fn all(&mut self) {
+    fn all(&mut self, wanted: Option<&[usize]>) {
         if self.points.len() <= FEW && self.judge.values.len() == 1 {
-            let all: Vec<usize> = (0..self.points.len()).collect();
-            all.chunks(TOGETHER).for_each(|together| self.look_at(together));
+            let wanted = wanted.map_or_else(|| (0..self.points.len()).collect(), <[usize]>::to_vec);
+            wanted.chunks(TOGETHER).for_each(|together| self.look_at(together));
             return;
         }
         let [rows, columns] = self.counts.map(lines);

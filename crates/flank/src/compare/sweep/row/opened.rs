@@ -45,6 +45,8 @@ pub(super) struct Sampled {
     nominal: Vec<Outcome>,
     tool: Option<SecondaryCutting>,
     blank: Option<Solid>,
+    /// The points that the tool's other positions are looked at for, where they are not all.
+    judged: Option<Vec<usize>>,
     /// Of cases that are done: the next ones take it.
     memory: Mutex<Memory>,
 }
@@ -74,7 +76,8 @@ impl<'o, 'g> Opened<'o, 'g> {
 
     /// The samples that were asked for.
     pub(super) fn into_samples(self) -> Vec<Sampled> {
-        self.samples.into_iter().map(|(_, sampled)| sampled).collect()
+        let nominal = self.nominal();
+        self.samples.into_iter().map(|(_, sampled)| sampled.begun(&nominal)).collect()
     }
 
     /// What gives the numbers of something that is collected. `None` where each case needs its text: where the numbers need more than what
@@ -100,17 +103,24 @@ impl<'o, 'g> Opened<'o, 'g> {
     /// The numbers of all samples. `None` where other surfaces cut points away.
     pub(super) fn all_samples(&mut self) -> Option<Vec<usize>> {
         let sampled = self.job.surfaces.iter().filter(|surface| surface.sample.is_some());
-        sampled.map(|surface| self.sample(surface)).collect()
+        sampled.map(|surface| self.sample(surface, None)).collect()
     }
 
-    /// The number of a surface's sample. `None` where other surfaces cut some of its points away.
-    fn sample(&mut self, surface: &'o GeneratedSurface<'g>) -> Option<usize> {
-        if let Some(known) = self.samples.iter().position(|(name, _)| *name == surface.name) {
-            return Some(known);
+    /// The number of a surface's sample, of which one point is wanted or all. `None` where other surfaces cut some of its points away.
+    fn sample(&mut self, surface: &'o GeneratedSurface<'g>, wanted: Option<usize>) -> Option<usize> {
+        let known = self.samples.iter().position(|(name, _)| *name == surface.name);
+        if known.is_none() {
+            let sampled = self.sampled(surface)?;
+            self.samples.push((&surface.name, Sampled { judged: Some(Vec::new()), ..sampled }));
         }
-        let sampled = self.sampled(surface)?;
-        self.samples.push((&surface.name, sampled));
-        Some(self.samples.len() - 1)
+        let number = known.unwrap_or(self.samples.len() - 1);
+        let judged = &mut self.samples[number].1.judged;
+        match (wanted, judged.as_mut()) {
+            (Some(point), Some(points)) => points.push(point),
+            (Some(_), None) => {}
+            (None, _) => *judged = None,
+        }
+        Some(number)
     }
 
     /// The points that the sample of a surface asks for.
@@ -121,7 +131,7 @@ impl<'o, 'g> Opened<'o, 'g> {
         let tool = tool.ok().inspect(SecondaryCutting::translate);
         let blank = blank::of(self.job, surface).cloned();
         let alone = self.alone(surface, &sample.coordinates, (sample.targets(), sample.counts));
-        Some(Sampled { tool, blank, ..alone }.begun(&self.nominal()))
+        Some(Sampled { tool, blank, ..alone })
     }
 
     fn requirements(&mut self) -> Option<CompiledNumbers> {
@@ -129,7 +139,7 @@ impl<'o, 'g> Opened<'o, 'g> {
         let required = sampled.map(|surface| {
             let graph = surface.surface.position.0[0].graph();
             let required = graph.with_settings(&self.settings, || RequiredNumber::all(surface, self.bindings));
-            Some((self.sample(surface)?, required))
+            Some((self.sample(surface, None)?, required))
         });
         required.collect::<Option<Vec<_>>>().map(CompiledNumbers::Requirements)
     }
@@ -190,13 +200,14 @@ impl<'o, 'g> Opened<'o, 'g> {
 
     fn at(&mut self, name: &str, [row, column]: [usize; 2]) -> Result<Option<CompiledNumbers>, Failure> {
         let columns = sample_of(self.job, name)?.counts[1];
-        let sample = self.sample(self.surface(name)?);
-        Ok(sample.map(|sample| CompiledNumbers::At(sample, row * columns + column)))
+        let point = row * columns + column;
+        let sample = self.sample(self.surface(name)?, Some(point));
+        Ok(sample.map(|sample| CompiledNumbers::At(sample, point)))
     }
 
     fn curvature(&mut self, name: &str) -> Result<Option<CompiledNumbers>, Failure> {
         let (surface, sample) = (self.surface(name)?, sample_of(self.job, name)?);
-        let Some(number) = self.sample(surface) else { return Ok(None) };
+        let Some(number) = self.sample(surface, None) else { return Ok(None) };
         let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
         let graph = surface.surface.position.0[0].graph();
         let geometry = graph.with_settings(&self.settings, || {
@@ -239,7 +250,7 @@ impl<'o, 'g> Opened<'o, 'g> {
 impl Sampled {
     fn new(family: SurfaceFamily, targets: Vec<[f64; 2]>, counts: [usize; 2]) -> Sampled {
         let (nominal, memory) = (Vec::new(), Mutex::default());
-        Sampled { family, targets, counts, start: None, nominal, tool: None, blank: None, memory }
+        Sampled { family, targets, counts, start: None, nominal, tool: None, blank: None, judged: None, memory }
     }
 
     /// With what the job itself has, whose settings have these values.
@@ -287,7 +298,11 @@ impl Sampled {
         solved.write_to(&mut points);
         self.memory().solved.push(solved);
         if let Some(tool) = &self.tool {
-            tool.with_settings(values).judge(&mut points, self.counts);
+            let tool = tool.with_settings(values);
+            match &self.judged {
+                Some(only) => tool.judge_some(&mut points, self.counts, only),
+                None => tool.judge(&mut points, self.counts),
+            };
         }
         if let Some(solid) = &self.blank {
             blank::cut_by(solid, &mut points);
