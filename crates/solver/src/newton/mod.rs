@@ -4,6 +4,7 @@ pub(crate) mod batch;
 pub(crate) mod elimination;
 pub(crate) mod least_squares;
 pub(crate) mod lines;
+pub(crate) mod minimax;
 pub(crate) mod multistart;
 pub(crate) mod scalar;
 pub(crate) mod solvers;

@@ -78,6 +78,11 @@ impl Chart {
         terms.iter().map(|term| term / sum).collect()
     }
 
+    /// How what each value counts changes with the share.
+    pub(crate) fn weight_slopes(count: usize, share: f64) -> Vec<f64> {
+        Basis::at(count, share).slopes
+    }
+
     /// The position at two shares, mm.
     pub fn at(&self, shares: [f64; 2]) -> [f64; 3] {
         self.summed([0, 1].map(|k| Basis::at(self.counts[k], shares[k]).values))

@@ -2,8 +2,8 @@
 
 use flank_export::fixed;
 use flank_solver::{
-    Chart, LeftOnWay, NormalLine, PoseSeries, SidePass, SideStrip, StraightSide, SurfaceFrame, left_on_way, lowest,
-    side_directions,
+    Chart, LeftOnWay, NormalLine, PoseSeries, SideMotion, SidePass, SideStrip, StraightSide, SurfaceFrame, left_on_way,
+    lowest, side_directions,
 };
 use nalgebra::Vector3;
 use schemars::JsonSchema;
@@ -33,6 +33,8 @@ const BEYOND: f64 = 0.15;
 const A_LITTLE: f64 = 0.005;
 /// Where the side is longer than its lines of contact, its lower end stands below the strip by this share of them.
 const OVERHANG: f64 = 0.05;
+/// How often a cutter is moved along itself to where its side touches.
+const SLIDES: usize = 3;
 /// Rows on which blocks are looked at.
 const ROWS: [f64; 3] = [0.0, 0.5, 1.0];
 
@@ -53,7 +55,9 @@ pub struct SideLeft {
     pub side: [f64; 2],
     /// How far the pass begins before and ends behind the surface, in shares of its length there.
     pub beyond: [f64; 2],
-    /// Whether no change of the axis leaves less.
+    /// By how much the best change of the axis promises to lower the largest amount of what is left, um.
+    pub gap_um: f64,
+    /// Whether that is next to nothing: no change of the axis leaves less.
     pub is_settled: bool,
 }
 
@@ -88,8 +92,9 @@ impl SideLeft {
         }
         if !self.is_settled {
             let message = format!(
-                "the axis of {cutter} is not the best: the search for what leaves least on {} did not end",
-                target.name()
+                "the axis of {cutter} is not the best: the search ended where what is left on {} may still fall by {} um",
+                target.name(),
+                fixed(self.gap_um, 4)
             );
             let way = "let the axis be free at fewer places, or mill a narrower strip".to_string();
             missed.push(NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way]));
@@ -218,8 +223,8 @@ impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
         Ok(found.expect("there are counts"))
     }
 
-    /// The best pass from a start, of which the axis is free at so many places.
-    fn pass(&self, start: &Start, free: usize, points: &[NormalLine]) -> Result<Option<SidePass>, NotDone> {
+    /// Where the search for the best pass begins, of which the axis is free at so many places.
+    fn begun(&self, start: Start, free: usize, points: &[NormalLine]) -> Result<Option<Begun>, NotDone> {
         let StraightSide { heights: [low, _], half_angle, .. } = self.side;
         let places: Vec<f64> = match free {
             1 => vec![0.5],
@@ -240,14 +245,74 @@ impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
         }
         let overhang = (0.5 * (length - needed)).min(OVERHANG * needed);
         let strip = SideStrip {
-            middle: self.middle(start)?,
+            middle: self.middle(&start)?,
             spindle_left: self.spindle_left,
             side: self.side,
             heights: places.iter().map(|[_, first, _]| low + (overhang + first) * half_angle.cos()).collect(),
             stock: self.target.milling.stock,
         };
         let turns: Vec<f64> = places.iter().map(|[turn, ..]| *turn).collect();
-        Ok(strip.nearest_pass(&turns, points))
+        Ok(strip.squared(&turns, points).map(|motion| Begun { strip, turns, motion, start }))
+    }
+}
+
+/// The motion with the least squares from a start.
+struct Begun {
+    strip: SideStrip,
+    turns: Vec<f64>,
+    motion: SideMotion,
+    start: Start,
+}
+
+impl Begun {
+    /// The best pass from there. The cutter is moved along itself until it touches with its side alone: a cylinder leaves the same.
+    fn best(mut self, points: &[NormalLine]) -> Option<(SidePass, Start)> {
+        let begun = self.strip.begun(&self.turns, points).unwrap_or(self.motion);
+        let mut pass = self.strip.nearest_pass(&begun, points)?;
+        for _ in 0..SLIDES {
+            let Some(up) = beside(&self.strip.side, pass.touches) else { break };
+            self.strip.heights.iter_mut().for_each(|height| *height += up);
+            pass = self.strip.nearest_pass(&pass.motion, points)?;
+        }
+        Some((pass, self.start))
+    }
+}
+
+/// How much farther up a side has to touch so that it does not touch beyond its ends; `None` where it does not.
+fn beside(side: &StraightSide, [lowest, highest]: [f64; 2]) -> Option<f64> {
+    let [low, high] = side.heights;
+    let needed = highest - lowest;
+    let spare = 0.5 * (high - low - needed);
+    (lowest < low || highest > high).then(|| low + spare.min(OVERHANG * needed) - lowest)
+}
+
+/// The pass whose largest remainder is least, from all starts. Where not even the mean of squares is below a largest that is known, none is.
+///
+/// # Errors
+/// Why the first start that failed did, if no pass was found.
+fn best_of(
+    strip: &Strip<'_, '_, '_>,
+    free: usize,
+    points: &[NormalLine],
+) -> Result<Option<(SidePass, Start)>, NotDone> {
+    let (mut begun, mut failed) = (Vec::new(), None);
+    for start in strip.starts()? {
+        match strip.begun(start, free, points) {
+            Ok(found) => begun.extend(found),
+            Err(why) => failed = failed.or(Some(why)),
+        }
+    }
+    begun.sort_by(|a, b| a.motion.root_mean_square().total_cmp(&b.motion.root_mean_square()));
+    let mut best: Option<(SidePass, Start)> = None;
+    for begun in begun {
+        let known = best.as_ref().map_or(f64::INFINITY, |(pass, _)| pass.motion.largest());
+        if begun.motion.root_mean_square() < known {
+            best = begun.best(points).filter(|(pass, _)| pass.motion.largest() < known).or(best);
+        }
+    }
+    match (best, failed) {
+        (None, Some(why)) => Err(why),
+        (best, _) => Ok(best),
     }
 }
 
@@ -276,25 +341,11 @@ pub(super) fn milled<'p, 'g>(
     let map = target.lattice(MAP.map(evenly))?;
     let points: Vec<NormalLine> = map.frames.iter().map(line_of).collect();
     let strip = Strip::new(target, side)?;
-    let mut best: Option<(SidePass, Start)> = None;
-    let mut failed = None;
-    for start in strip.starts()? {
-        match strip.pass(&start, free, &points) {
-            Ok(Some(pass)) => {
-                let is_better = best.as_ref().is_none_or(|(known, _)| squares(&pass.left) < squares(&known.left));
-                best = if is_better { Some((pass, start)) } else { best };
-            }
-            Ok(None) => {}
-            Err(why) => failed = failed.or(Some(why)),
-        }
-    }
-    let Some((pass, start)) = best else {
-        return Err(failed.unwrap_or_else(|| {
-            let message = format!("one pass of {name} does not cover {}: it is bent too much", target.name());
-            let way = "mill a narrower strip, or say `passes`".to_string();
-            NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way])
-        }));
-    };
+    let (pass, start) = best_of(&strip, free, &points)?.ok_or_else(|| {
+        let message = format!("one pass of {name} does not cover {}: it is bent too much", target.name());
+        let way = "mill a narrower strip, or say `passes`".to_string();
+        NotDone::new(NotDoneKind::NotMilled, target.name(), message).with(vec![way])
+    })?;
     let on_way = left_on_way(&pass.way, &cutter.cutting, &points);
     let told = side_left(target, &map, &on_way, (&pass, &start, side));
     let few: Vec<[f64; 6]> = evenly(9).into_iter().map(|share| pass.way.at(share)).collect();
@@ -312,10 +363,6 @@ pub(super) fn milled<'p, 'g>(
     let plan = Plan { shares, cusp: None, short: None, blocks: blocks(count)?, step: None, block: longest };
     let axes = machine.iter().map(|machine| machine.axes.along(&poses)).collect();
     Ok((Milled { plan, lattice, ways: vec![pass.way], poses: vec![poses], axes, machine }, told))
-}
-
-fn squares(left: &[f64]) -> f64 {
-    left.iter().map(|left| left * left).sum()
 }
 
 /// How long the way of the origin is, mm.
@@ -346,6 +393,7 @@ fn side_left(
         contact: above.clone().reduce(f64::min).zip(above.reduce(f64::max)).map(|(low, high)| [low, high]),
         side: side.heights,
         beyond: start.beyond,
+        gap_um: 1e3 * pass.gap,
         is_settled: pass.is_settled,
     }
 }
