@@ -46,6 +46,8 @@ pub struct Compilation<'g> {
     pub machines: Vec<MachineExpectations<'g>>,
     /// The errors that the file is to have.
     pub expected_errors: Vec<ExpectedError>,
+    /// The jobs of a file that is to have errors which are to have none of their own: nothing is tested of them. Where their names stand.
+    pub untested_jobs: Vec<Name>,
     /// All names of the texts, also of wrong ones.
     pub index: Index,
     main: Option<FileId>,
@@ -185,8 +187,16 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
     check_definitions(&mut context, &items);
     let main = files.last().map(|(id, _)| *id);
     let jobs = build_jobs(&mut context, &items, (main, request, &overrides), &sources);
-    let expected_errors = items.jobs.iter().filter(|item| Some(item.file) == main);
-    let expected_errors: Vec<_> = expected_errors.flat_map(|item| expect::errors(&mut context, &item.job)).collect();
+    let own_jobs = items.jobs.iter().filter(|item| Some(item.file) == main);
+    let (mut expected_errors, mut untested_jobs) = (Vec::new(), Vec::new());
+    for item in own_jobs {
+        let own = expect::errors(&mut context, &item.job);
+        untested_jobs.extend(own.is_empty().then(|| item.job.name.clone()));
+        expected_errors.extend(own);
+    }
+    if expected_errors.is_empty() {
+        untested_jobs.clear();
+    }
     let machines = if request.whole { items.expected(&mut context, files.last(), &jobs) } else { Vec::new() };
     let beside = files.iter().find(|(id, _)| Some(*id) == beside);
     let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
@@ -222,6 +232,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
         machine,
         machines,
         expected_errors,
+        untested_jobs,
         index,
         main,
         known_jobs: known_jobs.collect(),

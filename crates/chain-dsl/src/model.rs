@@ -568,6 +568,8 @@ pub struct PointRequirement<'g> {
     pub ends: (f64, f64),
     /// The message where it does not, in the words of the spec.
     pub message: String,
+    /// Where its name stands.
+    pub place: Span,
 }
 
 /// Values of two coordinates in rows and columns, told one by one: there may be millions.

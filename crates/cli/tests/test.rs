@@ -278,3 +278,56 @@ fn what_is_ambiguous_is_the_first_reason() {
     assert!(told.contains("    found: ambiguous: the ranges of both hold 3 branches"), "{told}");
     assert!(!told.contains("inner is solved"), "{told}");
 }
+
+/// An error that is expected keeps the whole file from being derived: whatever else it expects does not count as held.
+#[test]
+fn an_expected_error_hides_no_other_job() {
+    let folder = folder("test_hides");
+    let job = expecting("    expect highest(flank, rho) in 0 mm .. 1 mm\n");
+    let wrong = "\njob bad = first_gear {\n    drive m.C = rol\n    expect error E0201\n}\n";
+    written(&folder, "two.chain", &format!("{job}{wrong}"));
+    let run = tested(&folder, "", &[]);
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(3), "{told}");
+    assert!(told.contains("nothing is tested of it") && told.contains("a file of its own"), "{told}");
+    assert!(told.contains("2 of 3 expectations failed"), "the error itself is as expected: {told}");
+}
+
+/// What `flank solve` tells as not as required is a failure here, too.
+#[test]
+fn what_samples_require_is_tested() {
+    let folder = folder("test_requires");
+    let requiring = |high: &str| {
+        let rho = format!("require far = rho: 0 mm .. {high}, \"it lies too far out\"\n        rho: ");
+        expecting("    expect all solved\n").replacen("rho: ", &rho, 1)
+    };
+    written(&folder, "gear.chain", &requiring("100 mm"));
+    let run = tested(&folder, "", &[]);
+    assert_eq!(run.status.code(), Some(0), "{}{}", text(&run.stdout), text(&run.stderr));
+    written(&folder, "gear.chain", &requiring("36 mm"));
+    let run = tested(&folder, "", &[]);
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(3), "{told}");
+    assert!(told.contains("require far: 0 mm .. 36 mm") && told.contains("it lies too far out"), "{told}");
+    assert!(told.contains("far is"), "{told}");
+}
+
+/// Tools that keep versions of texts may change the ends of lines; whatever else a spec expects is tested where its snapshot cannot be read.
+#[test]
+fn snapshots_with_other_ends_of_lines_are_the_same_and_unreadable_ones_differ() {
+    let folder = folder("test_ends");
+    written(&folder, "gear.chain", &gear());
+    assert_eq!(tested(&folder, "", &["--accept"]).status.code(), Some(0));
+    let snapshot = std::fs::read_to_string(folder.join("gear.snapshot")).expect("it is written");
+    written(&folder, "gear.snapshot", &snapshot.replace('\n', "\r\n"));
+    let run = tested(&folder, "", &[]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stdout));
+
+    std::fs::write(folder.join("gear.snapshot"), b"\xff\xfe").expect("a file");
+    let run = tested(&folder, "", &[]);
+    let told = text(&run.stdout);
+    assert_eq!(run.status.code(), Some(3), "{told}");
+    assert!(told.contains("cannot read it") && told.contains("4 expectations"), "{told}");
+    assert_eq!(tested(&folder, "", &["--accept"]).status.code(), Some(0));
+    assert_eq!(tested(&folder, "", &[]).status.code(), Some(0));
+}

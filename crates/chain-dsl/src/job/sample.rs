@@ -63,7 +63,7 @@ fn limited<'g>(
     scope: &Scope<'g>,
 ) -> Option<PointRequirement<'g>> {
     let (of, ends) = kept(context, &written.within, surface, scope)?;
-    Some(PointRequirement { of, ends, message: written.message.clone() })
+    Some(PointRequirement { of, ends, message: written.message.clone(), place: written.within.key.span })
 }
 
 fn grid<'g>(

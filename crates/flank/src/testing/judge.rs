@@ -11,6 +11,7 @@ use crate::convert::Conversion;
 use crate::project::failure::Failure;
 use crate::project::requests::Onto;
 use crate::project::units;
+use crate::solve::required::RequiredNumber;
 use crate::solve::{self, SolveOptions, geometry, travel};
 use crate::testing::points::{Tested, place};
 use crate::testing::quantities::{FOLLOWED, Known};
@@ -117,6 +118,24 @@ fn of_status(tested: &Tested<'_, '_>, surfaces: &[usize], (status, at): (&str, &
     }
     let found = format!("{} of {} {status}", asked - wrong, units::counted(asked, "point"));
     Verdict { holds: wrong == 0 && asked > 0, found, details }
+}
+
+/// What a sample requires of its solved points, by its number.
+pub(super) fn of_requirement(tested: &Tested<'_, '_>, index: usize, number: usize) -> Verdict {
+    let surface = tested.surface(index);
+    let Some(sample) = &surface.sample else { return Verdict::lost("no sample") };
+    let (points, limit) = (tested.points(index), &sample.limits[number]);
+    let required = RequiredNumber::all(surface, &tested.job.bindings());
+    let missed: Vec<(usize, f64)> = required[number].missed(points).collect();
+    let all = units::counted(points.len(), "point");
+    if missed.is_empty() {
+        return Verdict { holds: true, found: format!("at {all} of {}", surface.name), details: Vec::new() };
+    }
+    let found = format!("not at {} of {all} of {}: {}", missed.len(), surface.name, limit.message);
+    let told = |(at, value): &(usize, f64)| {
+        format!("{} is {} at {}", limit.of.name, precise(limit.of.dimension, *value), place(sample, *at))
+    };
+    Verdict { holds: false, found, details: missed.iter().take(NAMED).map(told).collect() }
 }
 
 /// Where a value at points lies that is to be between two ends: the worst place, and how many are wrong.

@@ -15,7 +15,7 @@ use crate::project::requests::JobSelection;
 use crate::project::session::{Session, check};
 use crate::project::shown_path;
 use crate::project::spec::Origin;
-use crate::testing::judge::{judged, of_pose};
+use crate::testing::judge::{Verdict, judged, of_pose, of_requirement, precise};
 use crate::testing::points::{Tested, thinned};
 use crate::testing::quantities::Known;
 use crate::testing::request::TestRequest;
@@ -115,7 +115,7 @@ fn tested<'g>(
         session.check()?;
         let of_job = Tested::new(job, session);
         let known = Known::new(&of_job, graph, (&jobs, which, &origin));
-        let mut expectations = Vec::new();
+        let mut expectations = required(compilation, &of_job);
         for expectation in &job.expectations {
             expectations.push(verdict(compilation, expectation, judged(&known, &expectation.what)?));
         }
@@ -128,11 +128,22 @@ fn tested<'g>(
     Ok((items, snapshot))
 }
 
-fn verdict(
-    compilation: &Compilation<'_>,
-    expectation: &Expectation<'_>,
-    found: crate::testing::judge::Verdict,
-) -> TestedExpectation {
+/// What the samples of a job require of their points.
+fn required(compilation: &Compilation<'_>, job: &Tested<'_, '_>) -> Vec<TestedExpectation> {
+    let of_surface = |index: usize| {
+        let limits = job.surface(index).sample.iter().flat_map(|sample| &sample.limits);
+        limits.enumerate().map(move |(number, limit)| {
+            let place = Place::of_span(&compilation.sources, limit.place);
+            let Verdict { holds, found, details } = of_requirement(job, index, number);
+            let [low, high] = [limit.ends.0, limit.ends.1].map(|end| precise(limit.of.dimension, end));
+            let expected = format!("require {}: {low} .. {high}", limit.of.name);
+            TestedExpectation { expected, place, holds, found, details }
+        })
+    };
+    (0..job.job.surfaces.len()).flat_map(of_surface).collect()
+}
+
+fn verdict(compilation: &Compilation<'_>, expectation: &Expectation<'_>, found: Verdict) -> TestedExpectation {
     let (expected, place) = written(compilation, expectation.written);
     TestedExpectation { expected, place, holds: found.holds, found: found.found, details: found.details }
 }
@@ -173,6 +184,16 @@ fn wrong_as_expected(compilation: &Compilation<'_>, request: &TestRequest, nothi
             None => items.push(TestedItem { name: job.clone(), expectations: vec![expectation] }),
         }
     }
+    items.extend(compilation.untested_jobs.iter().map(|job| TestedItem {
+        name: job.node.clone(),
+        expectations: vec![TestedExpectation {
+            expected: "no error".to_string(),
+            place: Place::of_span(&compilation.sources, job.span),
+            holds: false,
+            found: "nothing is tested of it, since another job of this file expects an error".to_string(),
+            details: vec!["the job that is to be wrong needs a file of its own".to_string()],
+        }],
+    }));
     items.retain(|item| request.takes(&item.name));
     TestedSpec { items, ..nothing }
 }

@@ -33,7 +33,7 @@ pub(super) fn is_compared(request: &TestRequest) -> bool {
 /// is one of all jobs.
 ///
 /// # Errors
-/// If the snapshot cannot be read, or is no longer what the program wrote.
+/// If the work is cancelled.
 pub(super) fn compared(request: &TestRequest, jobs: &[Tested<'_, '_>]) -> Result<Option<TestedSnapshot>, Failure> {
     if !is_compared(request) {
         return Ok(None);
@@ -48,8 +48,14 @@ pub(super) fn compared(request: &TestRequest, jobs: &[Tested<'_, '_>]) -> Result
         let differences = vec!["there is no snapshot yet".to_string()];
         return Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture: None }));
     }
-    let unreadable = |error: std::io::Error| Failure::Input(format!("cannot read `{file}`: {error}"));
-    let before = files.real_path(&path).and_then(|real| files.read(&real, MOST_BYTES)).map_err(unreadable)?;
+    let before = match files.real_path(&path).and_then(|real| files.read(&real, MOST_BYTES)) {
+        // tools that keep versions of texts may change the ends of their lines
+        Ok(before) => before.replace("\r\n", "\n"),
+        Err(error) => {
+            let differences = vec![format!("cannot read it: {error}")];
+            return Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture: None }));
+        }
+    };
     if before == text {
         return Ok(Some(TestedSnapshot { file, is_same: true, differences: Vec::new(), text: None, picture: None }));
     }
