@@ -12,7 +12,7 @@ use crate::project::session::Session;
 use crate::solve::points::patch;
 use crate::solve::reasons;
 use crate::solve::summary::Summary;
-use crate::solve::surface::{bound, followed};
+use crate::solve::surface::{bound, followed, kept};
 
 /// A line on a surface.
 pub(crate) struct Line<'j, 'g> {
@@ -136,9 +136,12 @@ impl<'j, 'g> Sought<'j, 'g> {
 
     fn problem(&self, job: &Job<'g>, k: usize, session: Session) -> SurfaceProblem {
         let (surface, along) = (self.surface, &self.sample.coordinates[k]);
-        let problem = SurfaceProblem::line(&bound(job, surface), self.quantity, along.value)
-            .expect("a job without errors leaves nothing unbound");
-        problem.following_beyond(followed(surface)).with_instruction_set(session.instructions())
+        let bound = bound(job, surface);
+        let line = SurfaceProblem::line(&bound, self.quantity, along.value)
+            .map(|problem| problem.following_beyond(followed(surface)).with_instruction_set(session.instructions()));
+        // the line of the branch that is sampled
+        let kept = line.and_then(|problem| problem.keeping(&bound, &kept(surface)));
+        kept.expect("a job without errors leaves nothing unbound")
     }
 
     fn line(&self, k: usize, (points, effort): (Vec<SurfacePoint>, GridReport)) -> Line<'j, 'g> {

@@ -48,7 +48,7 @@ use self::result::{Instructions, SolveResult};
 pub(crate) use self::sampled::{points, points_of_branch, solve_surface, untrimmed};
 use self::solved::Solved;
 use self::step::Smooth;
-pub(crate) use self::surface::{bound, family, followed, problem, ranges};
+pub(crate) use self::surface::{bound, family, followed, kept, problem, ranges};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;

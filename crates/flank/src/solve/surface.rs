@@ -26,6 +26,12 @@ pub(crate) fn followed(surface: &GeneratedSurface<'_>) -> Vec<Range> {
     wider.collect()
 }
 
+/// What the sample of a surface keeps, and where.
+pub(crate) fn kept<'g>(surface: &GeneratedSurface<'g>) -> Vec<(Expr<'g>, Range)> {
+    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
+    kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect()
+}
+
 /// Points of a surface at values of two coordinates, on the branch that its sample keeps.
 pub(crate) fn problem<'g>(
     job: &Job<'g>,
@@ -33,10 +39,8 @@ pub(crate) fn problem<'g>(
     coordinates: [Expr<'g>; 2],
     session: Session,
 ) -> SurfaceProblem {
-    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
-    let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     on_any_branch(job, surface, coordinates, session)
-        .keeping(&bound(job, surface), &keep)
+        .keeping(&bound(job, surface), &kept(surface))
         .expect("a job without errors leaves nothing unbound")
 }
 
@@ -51,14 +55,12 @@ pub(crate) fn family<'g>(
     session: Session,
 ) -> SurfaceFamily {
     let bound = BoundSurface::new(&surface.surface, ranges(surface), bindings);
-    let kept = surface.sample.iter().flat_map(|sample| &sample.keep);
-    let keep: Vec<_> = kept.map(|(of, (low, high))| (of.value, Range { low: *low, high: *high })).collect();
     let made = SurfaceFamily::new(&bound, coordinates, settings, |problem| {
         problem
             .following_beyond(followed(surface))
             .with_instruction_set(session.instructions())
             .boxes(session.boxes())
-            .keeping(&bound, &keep)
+            .keeping(&bound, &kept(surface))
     });
     made.expect("a job without errors leaves nothing unbound")
 }

@@ -58,9 +58,9 @@ impl SurfaceFamily {
         surface: &BoundSurface<'g>,
         [quantity, along]: [Expr<'g>; 2],
         settings: &[(Expr<'g>, f64)],
-        made: impl FnOnce(SurfaceProblem) -> SurfaceProblem,
+        made: impl FnOnce(SurfaceProblem) -> Result<SurfaceProblem, TapeError>,
     ) -> Result<SurfaceFamily, TapeError> {
-        SurfaceFamily::open(settings, quantity, || SurfaceProblem::line(surface, quantity, along).map(made))
+        SurfaceFamily::open(settings, quantity, || SurfaceProblem::line(surface, quantity, along).and_then(made))
     }
 
     fn open<'g>(

@@ -20,7 +20,7 @@ use crate::project::session::Session;
 use crate::solve::limits::{self, Sought};
 use crate::solve::required::RequiredNumber;
 use crate::solve::starts::{self, Asked, Starts};
-use crate::solve::{self, blank, followed, ranges, secondary};
+use crate::solve::{self, blank, followed, kept, ranges, secondary};
 
 /// A job whose settings are open.
 pub(super) struct Opened<'o, 'g> {
@@ -153,8 +153,12 @@ impl<'o, 'g> Opened<'o, 'g> {
     fn line(&self, sought: &Sought<'_, 'g>, k: usize) -> Sampled {
         let (surface, targets) = (sought.surface, sought.targets(k));
         let of = [sought.quantity, sought.sample.coordinates[k].value];
-        let family = SurfaceFamily::line(&self.bound(surface), of, &self.settings, |problem| {
-            problem.following_beyond(followed(surface)).with_instruction_set(self.session.instructions())
+        let bound = self.bound(surface);
+        let family = SurfaceFamily::line(&bound, of, &self.settings, |problem| {
+            problem
+                .following_beyond(followed(surface))
+                .with_instruction_set(self.session.instructions())
+                .keeping(&bound, &kept(surface))
         });
         let family = family.expect("a job without errors leaves nothing unbound");
         let counts = [1, targets.len()];
