@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 import tempfile
@@ -292,7 +293,7 @@ class Job:
         }
         with tempfile.TemporaryDirectory(prefix="flank-") as folder:
             answer, again = self._asked(_flank.plot, {**options, "out": folder})
-            files = {file.name: file.read_bytes() for file in sorted(Path(folder).iterdir())}
+            files = _pages.read(folder)
         return _pages.Plot(answer, again, folder, files)
 
     def view(self, height: int = 600) -> _pages.Page:
@@ -745,8 +746,8 @@ class Job:
         rows = self.parameters._rows()
         plain = f"{self!r}\n\n{_display.aligned(surfaces)}\n\n{_display.aligned(rows)}"
         parts = [
-            f"<b>{self.name}</b> <code>{self.file}</code>",
-            f"<p>{self.doc}</p>" if self.doc else "",
+            f"<b>{html.escape(self.name)}</b> <code>{html.escape(self.file)}</code>",
+            f"<p>{html.escape(self.doc)}</p>" if self.doc else "",
             self._section(),
             _display.table(surfaces, ["surface", "frame", "points"]),
             _display.table(rows, ["name", "value", "range", "given by", "meaning"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,6 +27,7 @@ class Plot(Result):
     def __init__(self, answer: Answer, again: Again, inside: str, files: Mapping[str, bytes]) -> None:
         super().__init__(answer, again, inside)
         self._files = dict(files)
+        self._shown: dict[str, tuple[str, bytes]] | None = None
 
     @property
     def pictures(self) -> dict[str, dict[str, bytes]]:
@@ -59,9 +61,47 @@ class Plot(Result):
         return str(path)
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        first = next(iter(self.pictures.values()), {})
-        svg = first["svg"].decode() if "svg" in first else None
-        return _display.bundle(str(self), svg, first.get("png"))
+        if self._shown is None:
+            self._shown = self._small()
+        return _display.bundle_of(str(self), self._shown)
+
+    def _small(self) -> dict[str, tuple[str, bytes]]:
+        """What a notebook keeps of each picture, all of them together below its limit; what is larger is drawn again, smaller."""
+        files = forms(self._files)
+        # beside its bytes a picture has a name and a frame
+        most = _display.MOST_BYTES // max(len(files), 1) - 300
+        small: dict[str, tuple[str, bytes]] = {}
+        drawn = files
+        while True:
+            small |= {name: picture for name, of in drawn.items() if (picture := _display.kept(of, most)) is not None}
+            large = {name: drawn[name].get("png") for name in files if name not in small}
+            sides = [_display.smaller(png, most) for png in large.values()]
+            wanted = [size for size in sides if size is not None]
+            if not wanted:
+                return {name: small[name] for name in files if name in small}
+            drawn = self._drawn_again(list(large), min(wanted))
+
+    def _drawn_again(self, pictures: list[str], size: tuple[int, int]) -> dict[str, dict[str, bytes]]:
+        kinds = [one["what"] for one in self._read()["pictures"]]
+        what = [kind for kind in dict.fromkeys(kinds) if any(f".{kind}" in name for name in pictures)]
+        with tempfile.TemporaryDirectory(prefix="flank-") as folder:
+            self._again({"what": what, "size": size, "format": ["png"], "out": folder})
+            drawn = forms(read(folder))
+        return {name: drawn[name] for name in pictures}
+
+
+def read(folder: str) -> dict[str, bytes]:
+    """The files of a folder by their names."""
+    return {file.name: file.read_bytes() for file in sorted(Path(folder).iterdir())}
+
+
+def forms(files: Mapping[str, bytes]) -> dict[str, dict[str, bytes]]:
+    """Pictures by their names: of each its forms by the endings of its files."""
+    found: dict[str, dict[str, bytes]] = {}
+    for name, content in files.items():
+        picture, form = name.rsplit(".", 1)
+        found.setdefault(picture, {})[form] = content
+    return found
 
 
 class Page(Result):
