@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flank import _display
 from flank._errors import InputError
+from flank._quantities import names
 from flank._results import PICTURES, Again, Path_, Result, put
 
 if TYPE_CHECKING:
@@ -119,3 +120,11 @@ class Page(Result):
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
         return {"text/plain": str(self), "text/html": _display.frame(self.html, self.height)}
+
+
+class Report(Page):
+    """A page about a job, with all its numbers as document."""
+
+    def write(self, folder: Path_, formats: str | Iterable[str] = ("html",)) -> list[str]:
+        """Writes the page (html) and its text with pictures beside it (md)."""
+        return self._write(folder, format=names(formats))
