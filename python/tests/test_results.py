@@ -303,6 +303,23 @@ def test_what_gives_nothing_raises_why(job):
         assert caught.value.not_done and caught.value.not_done[0]["message"] in str(caught.value)
 
 
+def test_what_is_not_written_is_told():
+    def answer(files, *missing):
+        not_done = [{"kind": "no_body", "of": of, "place": None, "message": f"{of} is open", "details": ["close it"]} for of in missing]
+        return flank._flank.Answer(json.dumps({"files": files, "not_done": not_done}), "bodies", None, [], [])
+
+    def bodies(files, *missing):
+        return flank.Solids(answer([], "known"), lambda more: answer(files, *missing))
+
+    assert bodies(["a.stl"], "known").write("x") == ["a.stl"]
+    with pytest.warns(UserWarning, match="b is open\n  close it"):
+        assert bodies(["a.stl"], "known", "b").write("x") == ["a.stl"]
+    with pytest.raises(flank.NotSolved, match="known is open\n  close it") as caught:
+        bodies([], "known").write("x")
+    assert caught.value.not_done[0]["of"] == "known"
+    assert str(bodies([])) == "bodies\n\nknown is open\n  close it"
+
+
 def test_what_is_not_done_is_shown(job):
     lacking = flank.load("specs/hobbing/undercut_gear.chain").solve()
     reason = lacking.not_done[0]["message"]

@@ -130,9 +130,9 @@ class Result:
         text = self._answer.text()
         lines = (text.replace(self._inside, "") if self._inside else text).rstrip().splitlines()
         # no file was asked for
-        shown = [line for line in lines if line.strip() != "wrote"]
+        shown = "\n".join(line for line in lines if line.strip() != "wrote").rstrip()
         missing = told(self._read().get("not_done", []))
-        return "\n".join([*shown, *(["", missing] if missing else [])]).rstrip()
+        return f"{shown}\n\n{missing}" if missing else shown
 
     def __repr__(self) -> str:
         return str(self)
@@ -439,19 +439,19 @@ class _WithSettings(Result):
         beside = str(Path(self._job.file).parent / f"{self._job.name}_corrected.chain")
         text: str | None = json.loads(self._again({"write": beside, "dry": True}).document())["corrected"]
         if text is None:
-            raise NotSolved("no setting is corrected, so there is no spec with corrected settings", json.dumps(self.not_done))
+            raise self._uncorrected()
         return text
 
     def write(self, path: Path_) -> str:
         """Writes a spec with the settings that were found, a variant of the job, and gives its path. It uses the job's file, and lies in the
         same project."""
-        return self._written(self._again({"write": os.fspath(path)}))[0]
-
-    def _written(self, answer: Answer) -> list[str]:
-        files: list[str] = json.loads(answer.document())["files"]
+        files: list[str] = json.loads(self._again({"write": os.fspath(path)}).document())["files"]
         if not files:
-            raise NotSolved("no setting is corrected, so there is no spec with corrected settings", json.dumps(self.not_done))
-        return files
+            raise self._uncorrected()
+        return files[0]
+
+    def _uncorrected(self) -> NotSolved:
+        return NotSolved("no setting is corrected, so there is no spec with corrected settings", json.dumps(self.not_done))
 
     @property
     def table(self) -> dict[str, list[Any]]:
