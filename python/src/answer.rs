@@ -4,6 +4,7 @@ use std::fmt::Display;
 
 use flank::PointGrid;
 use pyo3::prelude::*;
+use pyo3::types::PyType;
 
 use crate::grid::Grid;
 
@@ -43,7 +44,11 @@ impl<A: flank::Answer> Told for A {
 struct Document {
     document: String,
     text: String,
+    seconds: Option<f64>,
 }
+
+/// What a result is made of again: document, text, seconds, points, and how settings scatter together.
+type Parts = (String, String, Option<f64>, Vec<Py<Grid>>, Vec<Vec<f64>>);
 
 impl Told for Document {
     fn document(&self) -> String {
@@ -55,7 +60,7 @@ impl Told for Document {
     }
 
     fn seconds(&self) -> Option<f64> {
-        None
+        self.seconds
     }
 }
 
@@ -79,13 +84,32 @@ impl Answer {
 
     /// A document that has a text of its own.
     pub(crate) fn of_document(result: &impl serde::Serialize, text: &impl Display) -> Answer {
-        let told = Document { document: document(result), text: text.to_string() };
+        let told = Document { document: document(result), text: text.to_string(), seconds: None };
         Answer { told: Box::new(told), grids: Vec::new(), covariance: Vec::new() }
     }
 }
 
 #[pymethods]
 impl Answer {
+    #[new]
+    fn restored(
+        document: String,
+        text: String,
+        seconds: Option<f64>,
+        grids: Vec<Py<Grid>>,
+        covariance: Vec<Vec<f64>>,
+    ) -> Answer {
+        Answer { told: Box::new(Document { document, text, seconds }), grids, covariance }
+    }
+
+    /// A pickle has what can be asked, and not the job that it was asked of.
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> (Bound<'py, PyType>, Parts) {
+        let answer = slf.get();
+        let grids = answer.grids.iter().map(|grid| grid.clone_ref(slf.py())).collect();
+        let covariance = answer.covariance.clone();
+        (slf.get_type(), (answer.document(), answer.text(), answer.seconds(), grids, covariance))
+    }
+
     /// The document, as JSON.
     fn document(&self) -> String {
         self.told.document()

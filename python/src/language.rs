@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flank::{Buffers, CheckResult, Code, Disk, Project, TestRequest};
+use flank_chain_dsl::Dimension;
 use pyo3::prelude::*;
 
 use crate::answer::Answer;
@@ -61,6 +62,19 @@ pub(crate) fn codes() -> String {
 #[pyfunction]
 pub(crate) fn explain(code: &str) -> Option<&'static str> {
     code.parse::<Code>().ok().map(flank::error_page)
+}
+
+/// The units of the language, in the order in which messages list them.
+#[pyfunction]
+pub(crate) fn units() -> Vec<&'static str> {
+    flank::vocabulary().units.to_vec()
+}
+
+/// Whether a unit is one of angles, and its size in mm or radians; none if there is no such unit.
+#[pyfunction]
+pub(crate) fn unit_size(name: &str) -> Option<(bool, f64)> {
+    let (size, dimension) = flank_chain_dsl::unit_size(name)?;
+    Some((dimension == Dimension::ANGLE, size))
 }
 
 /// The schemas of documents by their names.

@@ -1,6 +1,7 @@
 //! Keyword arguments as fields of requests: what is not there, or `None`, stays as it is.
 
 use std::str::FromStr;
+use std::sync::{Mutex, PoisonError};
 
 use flank::{EvaluatorOptions, MountingError, ToleratedAmount, UnknownChoice};
 use pyo3::conversion::FromPyObjectOwned;
@@ -8,6 +9,25 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::failure;
+
+/// How operations work numbers out that say nothing of it; none as long as nobody has set it.
+static EVALUATOR: Mutex<Option<EvaluatorOptions>> = Mutex::new(None);
+
+/// The same, as it is.
+pub(crate) fn evaluator_of_all() -> EvaluatorOptions {
+    EVALUATOR.lock().unwrap_or_else(PoisonError::into_inner).unwrap_or_default()
+}
+
+/// Sets whether operations use machine code, and how many boxes their searches examine, as far as these are given; says what it was.
+#[pyfunction]
+#[pyo3(signature = (machine_code=None, boxes=None))]
+pub(crate) fn evaluator(machine_code: Option<bool>, boxes: Option<u64>) -> (bool, u64) {
+    let mut evaluator = EVALUATOR.lock().unwrap_or_else(PoisonError::into_inner);
+    let before = evaluator.unwrap_or_default();
+    let machine_code = machine_code.unwrap_or(before.machine_code);
+    *evaluator = Some(EvaluatorOptions { machine_code, boxes: boxes.unwrap_or(before.boxes) });
+    (before.machine_code, before.boxes)
+}
 
 /// A dictionary of keyword arguments.
 #[derive(Clone, Copy)]
@@ -54,7 +74,7 @@ impl<'py> Options<'_, 'py> {
 
     /// How the numbers are worked out.
     pub(crate) fn evaluator(self) -> PyResult<EvaluatorOptions> {
-        let mut evaluator = EvaluatorOptions::default();
+        let mut evaluator = evaluator_of_all();
         self.put("boxes", &mut evaluator.boxes)?;
         Ok(evaluator)
     }

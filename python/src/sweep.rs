@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-use flank::{
-    CaseSource, Distribution, EvaluatorOptions, Failure, Monitor, StudyChunks, SweepRequest, SweepResult, VariedRange,
-};
+use flank::{CaseSource, Distribution, Failure, Monitor, StudyChunks, SweepRequest, SweepResult, VariedRange};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -14,7 +12,7 @@ use rayon::ThreadPoolBuilder;
 
 use crate::answer::Answer;
 use crate::job::Job;
-use crate::options::Options;
+use crate::options::{Options, evaluator_of_all};
 use crate::run::{STACK, run};
 
 /// Makes the folder of a study.
@@ -66,7 +64,7 @@ pub(crate) struct OpenStudy(Arc<flank::OpenStudy>);
 impl OpenStudy {
     #[new]
     fn open(py: Python<'_>, study: PathBuf) -> PyResult<OpenStudy> {
-        let opened = move |monitor: &dyn Monitor| flank::OpenStudy::open(&study, EvaluatorOptions::default(), monitor);
+        let opened = move |monitor: &dyn Monitor| flank::OpenStudy::open(&study, evaluator_of_all(), monitor);
         Ok(OpenStudy(Arc::new(run(py, opened)?)))
     }
 
@@ -75,17 +73,23 @@ impl OpenStudy {
         self.0.is_current()
     }
 
-    /// Computes chunks that are not there, from the first to the last of two or all, on so many threads if they are named.
-    #[pyo3(signature = (chunks=None, again=Vec::new(), threads=None))]
+    /// Computes chunks that are not there, from the first to the last of two, or a part of so many, or all, on so many threads if they are
+    /// named.
+    #[pyo3(signature = (chunks=None, again=Vec::new(), threads=None, part=None))]
     fn run(
         &self,
         py: Python<'_>,
         chunks: Option<(usize, usize)>,
         again: Vec<String>,
         threads: Option<usize>,
+        part: Option<(usize, usize)>,
     ) -> PyResult<Answer> {
         let study = Arc::clone(&self.0);
-        let chunks = chunks.map_or(StudyChunks::All, |(first, last)| StudyChunks::Between(first, last));
+        let chunks = match (chunks, part) {
+            (Some((first, last)), _) => StudyChunks::Between(first, last),
+            (None, Some((part, parts))) => StudyChunks::Part(part, parts),
+            (None, None) => StudyChunks::All,
+        };
         let found = run(py, move |monitor| match threads {
             Some(threads) => {
                 let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
@@ -108,6 +112,13 @@ pub(crate) fn sweep_chunks(py: Python<'_>, study: PathBuf) -> PyResult<usize> {
 #[pyfunction]
 pub(crate) fn sweep_status(py: Python<'_>, study: PathBuf) -> PyResult<Answer> {
     answered(py, run(py, move |_| flank::sweep_status(&study))?)
+}
+
+/// Writes the rows that are there into a file.
+#[pyfunction]
+pub(crate) fn sweep_gather(py: Python<'_>, study: PathBuf, out: PathBuf) -> PyResult<Answer> {
+    let (_, result) = run(py, move |_| flank::gather_sweep(&study, Some(&out)))?;
+    answered(py, result)
 }
 
 /// The columns of the rows that are there, and how far the study is.

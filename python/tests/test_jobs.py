@@ -11,6 +11,7 @@ import sys
 import textwrap
 import threading
 import time
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -278,3 +279,33 @@ def test_memory_stays(job):
     before = resident()
     cycle(1000)
     assert resident() - before < 5e6
+
+
+def test_numbers_do_not_depend_on_how_they_are_worked_out(job):
+    before = flank.evaluator(machine_code=False, boxes=1000)
+    try:
+        assert flank.evaluator() == {"machine_code": False, "boxes": 1000}
+        interpreted = job.solve()
+    finally:
+        flank.evaluator(**before)
+    assert flank.evaluator() == before and before["machine_code"]
+    compiled = job.solve()
+    assert interpreted.document["instructions"] != compiled.document["instructions"]
+    for name, surface in compiled.items():
+        assert np.array_equal(interpreted[name].xyz, surface.xyz, equal_nan=True)
+    with pytest.raises(flank.InputError, match="boxes"):
+        flank.evaluator(boxes=0)
+
+
+@pytest.mark.parametrize("of", [("a", "b"), (None, "b")])
+def test_a_deviation_is_one_of_surfaces(job, of):
+    with pytest.raises(TypeError, match="`surface` is .*: it is a surface of a job"):
+        flank.deviation(*of)
+    with pytest.raises(TypeError, match="`from_` is 'concave'"):
+        flank.deviation(job["concave"], from_="concave")
+
+
+@pytest.mark.skipif(not flank._flank.IS_RELEASE, reason="not built as wheels are")
+def test_a_wheel_is_small():
+    library = Path(flank._flank.__file__).read_bytes()
+    assert len(zlib.compress(library)) < 8_000_000

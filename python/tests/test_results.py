@@ -162,7 +162,7 @@ def test_contacts(results):
     assert set(pair.contacts()) >= {"drive_side"}
     mounted = pair.contact("drive_side", errors={"m.E": "0.1 mm"})
     assert mounted["mounted"] == [{"axis": "m.E", "value": 0.1, "unit": "mm"}]
-    with pytest.raises(flank.InputError, match="unit"):
+    with pytest.raises(flank.SpecError, match="E0301"):
         pair.contact("drive_side", errors={"m.E": 0.1})
 
 
@@ -293,3 +293,53 @@ def test_what_does_not_go_together_is_told(job, call):
     with pytest.raises(flank.Error) as caught:
         call(job)
     assert not isinstance(caught.value, flank.InternalError) and str(caught.value)
+
+
+def test_what_gives_nothing_raises_why(job):
+    pair = flank.load(PAIR)
+    for call in (pair.solid, pair.mesh, lambda: flank.deviation(job["concave"], from_=pair["gear_convex"])):
+        with pytest.raises(flank.NotSolved) as caught:
+            call()
+        assert caught.value.not_done and caught.value.not_done[0]["message"] in str(caught.value)
+
+
+def test_what_is_not_written_is_told():
+    def answer(files, *missing):
+        not_done = [{"kind": "no_body", "of": of, "place": None, "message": f"{of} is open", "details": ["close it"]} for of in missing]
+        return flank._flank.Answer(json.dumps({"files": files, "not_done": not_done}), "bodies", None, [], [])
+
+    def bodies(files, *missing):
+        return flank.Solids(answer([], "known"), lambda more: answer(files, *missing))
+
+    assert bodies(["a.stl"], "known").write("x") == ["a.stl"]
+    with pytest.warns(UserWarning, match="b is open\n  close it"):
+        assert bodies(["a.stl"], "known", "b").write("x") == ["a.stl"]
+    with pytest.raises(flank.NotSolved, match="known is open\n  close it") as caught:
+        bodies([], "known").write("x")
+    assert caught.value.not_done[0]["of"] == "known"
+    assert str(bodies([])) == "bodies\n\nknown is open\n  close it"
+
+
+def test_what_is_not_done_is_shown(job):
+    lacking = flank.load("specs/hobbing/undercut_gear.chain").solve()
+    reason = lacking.not_done[0]["message"]
+    assert reason in str(lacking) and reason in lacking._repr_mimebundle_()["text/plain"]
+    assert "not solved" not in str(job.solve())
+
+
+def test_reports_are_written_as_markdown(results, tmp_path):
+    files = results["flank.report/2"].write(tmp_path, ["html", "md"])
+    assert {name.rsplit(".", 1)[-1] for name in files} >= {"html", "md"}
+
+
+def test_one_of_several_millings_is_drawn():
+    job = flank.load("specs/bevel/milled_pinion.chain")
+    names = {milling: job.plot("milling", milling=milling, formats="svg").svg for milling in ("finish", "other")}
+    assert names["finish"] != names["other"]
+
+
+def test_frames_of_another_machine(job):
+    derived = job.derive(to="specs/machines/free_form.chain", tool_frame="cutter", work_frame="work")
+    assert derived.page
+    with pytest.raises(flank.Error, match="nowhere"):
+        job.derive(to="specs/machines/free_form.chain", tool_frame="nowhere")

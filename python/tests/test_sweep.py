@@ -171,7 +171,7 @@ def test_what_does_not_go_together_is_refused(job, tmp_path):
         ({"vary": {"m.radial_distance": ends[:2]}}, "write two ends and how many values"),
         ({"vary": {"m.radial_distance": (*ends[:2], 0)}}, "whole number from 1"),
         ({"vary": {}}, "names nothing"),
-        ({"scatter": {"m.radial_distance": 0.01}}, "this takes a length above zero"),
+        ({"scatter": {"m.radial_distance": 0.01}}, "error[E0301]: `m.radial_distance` must be a length"),
         ({"scatter": {"m.radial_distance": ("cauchy", "1 um")}}, "'normal' or 'uniform'"),
         ({"scatter": {"m.radial": "1 um"}}, "has no parameter"),
         ({"vary": {"m.radial_distance": ends}, "collect": "poinst"}, "write points, requirements, limits"),
@@ -329,3 +329,48 @@ def test_cases_that_come_again_keep_their_numbers(job, tmp_path):
     study = flank.sweep(job, {"m.radial_distance [mm]": [98] * 8}, collect="at:concave[7,15]", out=tmp_path / "a")
     again = emptied(study, tmp_path / "b", 2).run()
     assert again.columns()["number"].tolist() == list(range(8)) and len(chunks(again)) == 4
+
+
+def test_parts_are_all_chunks_and_none_twice(study, tmp_path):
+    from flank._study import _begun
+
+    parted = emptied(study, tmp_path / "parted", 10)
+    numbers = [list(_begun((part, 3), 10)) for part in range(3)]
+    assert sum(numbers, []) == list(range(10))
+    known = set()
+    for part in range(3):
+        parted.run(part=(part, 3))
+        new = set(chunks(parted)) - known
+        assert len(new) == len(numbers[part])
+        known |= new
+    assert len(known) == 10 and parted.progress()["verdicts"] == study.progress()["verdicts"]
+    assert (parted.columns()["points.solved"] == study.columns()["points.solved"]).all()
+    for wrong in ((3, 3), (0, 0), 1):
+        with pytest.raises(flank.InputError, match="part"):
+            parted.run(part=wrong)
+    with pytest.raises(flank.InputError, match="leave one"):
+        parted.run((0, 1), part=(0, 2))
+
+
+def test_rows_are_written_as_the_command_gathers_them(study, tmp_path):
+    polars = pytest.importorskip("polars")
+    assert study.write(tmp_path / "rows.csv") == str(tmp_path / "rows.csv")
+    rows = list(csv.DictReader(open(tmp_path / "rows.csv", newline="")))
+    assert [float(row["points.solved"]) for row in rows] == study.columns()["points.solved"].tolist()
+    table = polars.read_parquet(study.write(tmp_path / "rows.parquet"))
+    assert table["points.solved"].to_list() == study.columns()["points.solved"].tolist()
+    lacking = emptied(study, tmp_path / "lacking", 96)
+    with pytest.warns(UserWarning, match="chunk"):
+        lacking.write(tmp_path / "none.csv")
+
+
+def test_a_study_without_a_folder_leaves_none(job, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = flank.sweep(job, {"m.radial_distance [mm]": [97.9, 98.1]}, collect="points", limit="60s")
+    folder = Path(study.folder)
+    assert folder.is_dir() and not list(tmp_path.iterdir())
+    assert (pickle.loads(pickle.dumps(study)).columns()["points.solved"] == 1395).all()
+    del study
+    assert not folder.exists()
+    with pytest.raises(flank.InputError, match="60s"):
+        flank.sweep(job, {"m.radial_distance [mm]": [97.9]}, collect="points", limit="a minute")

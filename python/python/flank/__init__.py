@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import json as _json
 import os as _os
-from collections.abc import Iterable as _Iterable
 from typing import Any as _Any
 
 from flank import _flank
+from flank._asked import Asked as _Asked
 from flank._errors import (
     ConversionError,
     Error,
@@ -28,7 +28,7 @@ from flank._errors import (
 )
 from flank._job import Job, Surface
 from flank._machines import Bricks, Derivation, Milling, Motion, Settings, Solids
-from flank._pages import Page, Plot
+from flank._pages import Page, Plot, Report
 from flank._parameters import Parameter, Parameters
 from flank._points import SurfacePoints
 from flank._quantities import count as _count
@@ -43,6 +43,7 @@ from flank._results import (
     Synthesis,
     Tolerance,
 )
+from flank._specs import Imported, import_rexs, new, templates
 from flank._study import Study, sweep
 
 __all__ = [
@@ -54,6 +55,7 @@ __all__ = [
     "Error",
     "FileError",
     "Fit",
+    "Imported",
     "InputError",
     "InternalError",
     "Job",
@@ -66,6 +68,7 @@ __all__ = [
     "Parameters",
     "Plot",
     "Points",
+    "Report",
     "Result",
     "Sensitivity",
     "Settings",
@@ -79,13 +82,17 @@ __all__ = [
     "check",
     "codes",
     "deviation",
+    "evaluator",
     "explain",
     "format",
+    "import_rexs",
     "load",
     "load_all",
     "loads",
+    "new",
     "schemas",
     "sweep",
+    "templates",
     "test",
     "threads",
 ]
@@ -141,20 +148,20 @@ def deviation(surface: Surface, from_: Surface, *, align: bool = True) -> Deviat
     The surface is turned about z, a rack's shifted along y, to meet the other in the middle of its grid, unless `align` is false. Both may be of jobs with different
     values or specs.
 
+    Raises `NotSolved` if no point of one has a place on the other.
+
     >>> import flank
     >>> jobs = flank.load_all("specs/bevel/ease_off_19x62.chain")
     >>> e = flank.deviation(jobs["pinion"]["concave"], from_=jobs["basic"]["concave"])
     >>> e.counts, round(e.rms, 2)
     ((25, 45), 25.77)
     """
+    for what, of in (("surface", surface), ("from_", from_)):
+        if not isinstance(of, Surface):
+            raise TypeError(f'`{what}` is {of!r}: it is a surface of a job, for example job["concave"]')
     options = {"reference": from_.name, "no_align": not align}
-    native, other = surface.job._native, from_.job._native
-    name = surface.name
-
-    def asked(more: dict[str, _Any]) -> _flank.Answer:
-        return _flank.deviation(native, name, {**options, **more}, other)
-
-    return Deviation(asked({}), asked)
+    asked = _Asked(_flank.deviation, surface.job, options, (surface.name,), from_.job)
+    return Deviation(asked({}), asked)._given()
 
 
 def check(*specs: _Path, text: str | None = None) -> dict[str, _Any]:
@@ -231,6 +238,21 @@ def schemas() -> dict[str, dict[str, _Any]]:
     True
     """
     return {name: _json.loads(text) for name, text in _flank.schemas()}
+
+
+def evaluator(*, machine_code: bool | None = None, boxes: int | None = None) -> dict[str, _Any]:
+    """Sets how all operations of this process work numbers out from now on, and gives what it was. Without `machine_code` equations are
+    interpreted, for systems that forbid executable memory; `boxes` is how many boxes a search for all branches examines. What is not given
+    stays. No bit of a point depends on it.
+
+    >>> import flank
+    >>> flank.evaluator(machine_code=False)["machine_code"]
+    True
+    >>> flank.evaluator(machine_code=True)["machine_code"]
+    False
+    """
+    was = _flank.evaluator(machine_code, _count(boxes, "boxes", 1, 10**12))
+    return {"machine_code": was[0], "boxes": was[1]}
 
 
 def threads(count: int | None = None) -> int:

@@ -98,16 +98,18 @@ def ranges(vary: Mapping[str, tuple[Quantity, Quantity, int]]) -> list[tuple[str
 
 def distributions(scatter: Mapping[str, Any]) -> dict[str, Any]:
     """Standard deviations, and which of them are half widths instead."""
-    sizes, uniform = {}, []
     for name, wanted in scatter.items():
-        kind, size = wanted if _is_named(wanted) else ("normal", wanted)
-        if kind not in ("normal", "uniform"):
+        if _is_named(wanted) and wanted[0] not in ("normal", "uniform"):
             raise InputError(f"`scatter[{name!r}]` is {wanted!r}: it is 'normal' or 'uniform', with an amount")
-        sizes[name] = size
-        uniform += [name] if kind == "uniform" else []
-    if not sizes:
+    if not scatter:
         raise InputError("`scatter` names nothing that differs from case to case")
-    return {"scatter": amounts(sizes, "scatter"), "uniform": uniform}
+    uniform = [name for name, wanted in scatter.items() if _is_named(wanted) and wanted[0] == "uniform"]
+    return {"scatter": amounts(sizes(scatter), "scatter"), "uniform": uniform}
+
+
+def sizes(scatter: Mapping[str, Any]) -> dict[str, Quantity]:
+    """How far each scatters, without how."""
+    return {name: wanted[1] if _is_named(wanted) else wanted for name, wanted in scatter.items()}
 
 
 def _is_named(wanted: Any) -> bool:

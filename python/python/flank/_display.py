@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import base64
 import html
-from collections.abc import Sequence
+import math
+import struct
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -13,19 +15,54 @@ if TYPE_CHECKING:
     from flank._points import Floats, SurfacePoints
 
 MOST_BYTES = 200_000
+SVG = "image/svg+xml"
+PNG = "image/png"
+# of a picture that is drawn again, at first and at the least
+_SIDES = (1000, 750)
+_LEAST_SIDE = 150
 _WIDTH = 480
 _LINES = 41
 _COLOURS = ("#1f5fa8", "#b5472f", "#3b7d4f", "#7d5ba6", "#8a6d1d")
 
 
-def bundle(text: str, svg: str | None = None, png: bytes | None = None) -> dict[str, str]:
+def bundle(text: str, svg: str | None = None) -> dict[str, str]:
     """A bundle of types that notebooks choose from; a picture that is too large is left out."""
     shown = {"text/plain": text}
     if svg is not None and len(svg.encode()) < MOST_BYTES:
         shown["image/svg+xml"] = svg
-    elif png is not None and len(png) * 4 // 3 < MOST_BYTES:
-        shown["image/png"] = base64.b64encode(png).decode()
     return shown
+
+
+def bundle_of(text: str, pictures: Mapping[str, tuple[str, bytes]]) -> dict[str, str]:
+    """The same of one picture, or of several on a page below each other: of each its type and its bytes, by its name."""
+    if len(pictures) == 1:
+        ((kind, content),) = pictures.values()
+        return {"text/plain": text, kind: content.decode() if kind == SVG else base64.b64encode(content).decode()}
+    if not pictures:
+        return {"text/plain": text}
+    return {"text/plain": text, "text/html": "".join(_image(name, *of) for name, of in pictures.items())}
+
+
+def _image(name: str, kind: str, content: bytes) -> str:
+    return f'<p><img alt="{html.escape(name)}" src="data:{kind};base64,{base64.b64encode(content).decode()}"/></p>'
+
+
+def kept(forms: Mapping[str, bytes], most: int) -> tuple[str, bytes] | None:
+    """The form of a picture that takes less than so many bytes in a notebook, with its type; SVG before PNG."""
+    # base64 has four letters for three bytes
+    small = [(kind, forms[form]) for form, kind in (("svg", SVG), ("png", PNG)) if len(forms.get(form, b"")) * 4 // 3 < most and form in forms]
+    return small[0] if small else None
+
+
+def smaller(png: bytes | None, most: int) -> tuple[int, int] | None:
+    """Sides with which a picture may take less than so many bytes in a notebook; none where it would be too small to see."""
+    if png is None:
+        return _SIDES
+    # the header of a PNG has its width and its height
+    sides = struct.unpack(">II", png[16:24])
+    shrunk = min(0.9, 0.95 * math.sqrt(0.75 * most / len(png)))
+    width, height = (int(side * shrunk) for side in sides)
+    return (width, height) if min(width, height) >= _LEAST_SIDE else None
 
 
 def table(rows: Sequence[Sequence[str]], head: Sequence[str]) -> str:

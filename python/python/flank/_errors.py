@@ -40,6 +40,27 @@ class SpecError(Error):
         return (type(self), (str(self), self._findings))
 
 
+def of_dimension(option: str, given: tuple[str, str], kinds: tuple[str, str], instead: str) -> SpecError:
+    """The finding of a value with a wrong dimension, as the language tells it of `set`: what was given, and what is wanted and found."""
+    (name, value), (wanted, found) = given, kinds
+    place = {"file": f"option `{option}`", "line": 1, "column": len(name) + 2, "text": value}
+    finding = {
+        "code": "E0301",
+        "severity": "error",
+        "message": f"`{name}` must be {wanted}, this is {found}",
+        "place": place,
+        "notes": [],
+        "help": f"give it a unit: `{instead}`",
+        "cures": [{"title": f"write `{instead}`", "place": place, "replacement": instead}],
+    }
+    under = " " * (len(name) + 1) + "^" * len(value)
+    rendered = (
+        f"error[E0301]: {finding['message']}\n --> {place['file']}:1:{place['column']}\n  |\n"
+        f"1 | {name}={value}\n  | {under}\n  |\n  = help: {finding['help']}\n"
+    )
+    return SpecError(rendered, json.dumps([finding]))
+
+
 class NotSolved(Error):
     """What was asked for cannot be solved: an operation has nothing to give, or `strict=True` was asked for."""
 

@@ -6,6 +6,7 @@ import numpy.typing as npt
 __all__ = [
     "Answer",
     "Grid",
+    "IS_RELEASE",
     "Job",
     "OpenStudy",
     "VERSION",
@@ -15,13 +16,16 @@ __all__ = [
     "convert",
     "derive",
     "deviation",
+    "evaluator",
     "explain",
     "fit",
+    "import_rexs",
     "layout",
     "load",
     "measure",
     "mesh",
     "mill",
+    "new_job",
     "plot",
     "report",
     "schemas",
@@ -29,16 +33,21 @@ __all__ = [
     "solve",
     "sweep_chunks",
     "sweep_columns",
+    "sweep_gather",
     "sweep_plan",
     "sweep_status",
     "synthesis",
+    "templates",
     "test",
     "threads",
     "tolerance",
+    "unit_size",
+    "units",
     "view",
 ]
 
 VERSION: str
+IS_RELEASE: bool
 
 _Options = dict[str, Any]
 _Floats = npt.NDArray[np.float64]
@@ -47,6 +56,9 @@ _Floats = npt.NDArray[np.float64]
 class Answer:
     grids: list[Grid]
     covariance: list[list[float]]
+    def __new__(
+        cls, document: str, text: str, seconds: float | None, grids: list[Grid], covariance: list[list[float]]
+    ) -> Answer: ...
     def document(self) -> str: ...
     def text(self) -> str: ...
     def seconds(self) -> float | None: ...
@@ -64,6 +76,7 @@ class Grid:
     residual: Any
     unknowns: dict[str, tuple[str, _Floats]]
     fields: dict[str, tuple[str, str, _Floats]]
+    def __new__(cls, parts: tuple[Any, ...]) -> Grid: ...
 
 @final
 class Job:
@@ -83,7 +96,13 @@ class Job:
 class OpenStudy:
     def __new__(cls, study: str) -> OpenStudy: ...
     def is_current(self) -> bool: ...
-    def run(self, chunks: tuple[int, int] | None = None, again: list[str] = ..., threads: int | None = None) -> Answer: ...
+    def run(
+        self,
+        chunks: tuple[int, int] | None = None,
+        again: list[str] = ...,
+        threads: int | None = None,
+        part: tuple[int, int] | None = None,
+    ) -> Answer: ...
 
 def load(
     path: str, texts: list[tuple[str, str]], name: str | None = None, set: list[tuple[str, str]] = ...
@@ -113,4 +132,11 @@ def sweep_plan(job: Job, options: _Options) -> Answer: ...
 def sweep_chunks(study: str) -> int: ...
 def sweep_status(study: str) -> Answer: ...
 def sweep_columns(study: str) -> tuple[Answer, dict[str, Any]]: ...
+def sweep_gather(study: str, out: str) -> Answer: ...
+def templates() -> Answer: ...
+def new_job(template: str, folder: str, name: str | None, values: list[tuple[str, str]]) -> Answer: ...
+def import_rexs(file: str, options: _Options) -> tuple[Answer, list[str]]: ...
+def units() -> list[str]: ...
+def unit_size(name: str) -> tuple[bool, float] | None: ...
+def evaluator(machine_code: bool | None = None, boxes: int | None = None) -> tuple[bool, int]: ...
 def threads(count: int | None = None) -> int: ...

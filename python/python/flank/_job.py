@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import html
 import json
 import os
 import tempfile
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,9 +27,10 @@ from flank._arguments import (
     several,
     single,
 )
+from flank._asked import Asked, AskedOfMeasured, Operation
 from flank._errors import InputError
 from flank._parameters import Parameters, parameter
-from flank._quantities import Quantity, amounts, count, length, names, number, text
+from flank._quantities import Quantity, amounts, count, dimensions, length, names, number, text
 
 
 class Surface:
@@ -63,7 +65,6 @@ class Surface:
             if name not in known:
                 raise InputError(f"nothing is known of `{name}`; parameters with a derivative: {', '.join(known)}")
         values = np.stack([grid[known[name]] for name in wanted], axis=-1) if wanted else np.empty((*grid.counts, 0))
-        values.flags.writeable = False
         return _results.Sensitivity(values, wanted, [grid.units[known[name]] for name in wanted])
 
     def __repr__(self) -> str:
@@ -123,6 +124,54 @@ class Job:
         return dict(self._native.set)
 
     @property
+    def text(self) -> str:
+        """The text of its spec; where values were set from outside, that of a variant of the job with these, as it stands beside it.
+
+        >>> import flank
+        >>> job = flank.load("specs/bevel/pinion_19x62.chain").with_values({"m.radial_distance": "98.1 mm"})
+        >>> print(job.text)
+        use "pinion_19x62.chain"
+        <BLANKLINE>
+        job pinion_19x62_changed = pinion_19x62(m.radial_distance: 98.1 mm)
+        <BLANKLINE>
+        """
+        return self._text_in(os.path.dirname(self._path))
+
+    def save(self, path: Path_) -> str:
+        """Writes its `text` and gives the path. A variant uses the job's file, and lies in the same project.
+
+        Raises `SpecError` if what it uses is not found from there.
+
+        >>> import flank, shutil, tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     spec = shutil.copy("specs/tutorial/first_gear.chain", folder)
+        ...     fine = flank.load(spec, "first_gear").with_values({"module": "2 mm"})
+        ...     flank.load(fine.save(f"{folder}/fine.chain")).parameters["module"]
+        Parameter(2.0 mm, given by the job)
+        """
+        target = os.path.abspath(path)
+        text = self._text_in(os.path.dirname(target))
+        if target == os.path.abspath(self._path) and text != self._native.texts[0][1]:
+            raise InputError(f"`{os.fspath(path)}` is the spec of the job: a variant stands in a file of its own")
+        _flank.load(target, [(target, text)])
+        _results.put(Path(path), text.encode())
+        return os.fspath(path)
+
+    @property
+    def _path(self) -> str:
+        """Of its spec: relative names stay as they were given as long as they lead to the same file."""
+        first = self._native.texts[0][0]
+        return self.file if os.path.realpath(self.file) == first else first
+
+    def _text_in(self, folder: str) -> str:
+        if not self.overrides:
+            return self._native.texts[0][1]
+        used = os.path.relpath(self._path, folder or ".").replace(os.sep, "/")
+        values = ", ".join(f"{name.removeprefix(self.name + '.')}: {value}" for name, value in self.overrides.items())
+        text = f'use "{used}"\n\njob {self.name}_changed = {self.name}({values})\n'
+        return _flank.layout(os.path.join(folder, f"{self.name}_changed.chain"), text)
+
+    @property
     def warnings(self) -> list[dict[str, Any]]:
         """What is doubtful in its spec: `code`, `message`, `place`, `help`."""
         findings: list[dict[str, Any]] = json.loads(self._native.warnings)
@@ -167,11 +216,7 @@ class Job:
         False
         """
         changed = {**self.overrides, **{name: text(value) for name, value in {**(values or {}), **more}.items()}}
-        texts = self._native.texts
-        # relative names stay as they were given as long as they lead to the same file
-        is_same = os.path.realpath(self.file) == texts[0][0]
-        file = self.file if is_same else texts[0][0]
-        return Job(_flank.load(file, texts, self.name, sorted(changed.items()))[0])
+        return Job(_flank.load(self._path, self._native.texts, self.name, sorted(changed.items()))[0])
 
     def solve(
         self,
@@ -231,7 +276,7 @@ class Job:
             "density": number(density, "density", 0.0),
             "ball": length(ball, "ball"),
         }
-        return _machines.Solids(*self._asked(_flank.solid, options))
+        return _machines.Solids(*self._asked(_flank.solid, options))._given()
 
     def mesh(
         self, teeth: int | None = 1, *, elements: tuple[int, int, int] = (8, 12, 6), order: int = 1
@@ -252,7 +297,7 @@ class Job:
             "elements": sides,
             "order": str(order),
         }
-        return _machines.Bricks(*self._asked(_flank.mesh, options))
+        return _machines.Bricks(*self._asked(_flank.mesh, options))._given()
 
     def plot(
         self,
@@ -262,6 +307,7 @@ class Job:
         reference: str | None = None,
         of: str | Iterable[str] = (),
         contact: str | Iterable[str] = (),
+        milling: str | None = None,
         errors: Mapping[str, Quantity] | None = None,
         positions: int | None = None,
         compound: Quantity | None = None,
@@ -270,7 +316,7 @@ class Job:
         no_origin: bool = False,
     ) -> _pages.Plot:
         """Draws pictures: gear, surface, topography, traces, curvature, sensitivity, deviation, left, residual, contact-lines, section,
-        machine, motion, pattern, error, gap, path, milling. Without a kind, the first three that fit.
+        machine, motion, pattern, error, gap, path, milling. Without a kind, the first three that fit. `milling` names the one of several.
 
         >>> import flank
         >>> list(flank.load("specs/bevel/pinion_19x62.chain").plot("section").pictures)
@@ -283,6 +329,7 @@ class Job:
             "reference": reference,
             "of": names(of),
             "contact": names(contact),
+            "milling": milling,
             "errors": mounting_errors(errors),
             "positions": count(positions, "positions", 4, 10_000),
             "compound": length(compound, "compound"),
@@ -290,9 +337,9 @@ class Job:
             "format": names(formats),
             "no_origin": no_origin,
         }
-        with tempfile.TemporaryDirectory(prefix="flank-") as folder:
+        with tempfile.TemporaryDirectory(prefix="flank-") as folder, dimensions(error=errors):
             answer, again = self._asked(_flank.plot, {**options, "out": folder})
-            files = {file.name: file.read_bytes() for file in sorted(Path(folder).iterdir())}
+            files = _pages.read(folder)
         return _pages.Plot(answer, again, folder, files)
 
     def view(self, height: int = 600) -> _pages.Page:
@@ -302,7 +349,7 @@ class Job:
         >>> flank.load("specs/bevel/pinion_19x62.chain").view().html[:15].lower()
         '<!doctype html>'
         """
-        return self._page(_flank.view, {}, height)
+        return _pages.Page(*self._page(_flank.view, {}), height)
 
     def report(
         self,
@@ -311,8 +358,8 @@ class Job:
         step: Quantity | None = None,
         date: str | None = None,
         height: int = 800,
-    ) -> _pages.Page:
-        """A page about the job to attach to an order. Its document has all numbers.
+    ) -> _pages.Report:
+        """A page about the job to attach to an order. Its document has all numbers; `write` gives it as Markdown, too.
 
         >>> import flank
         >>> report = flank.load("specs/hobbing/helical_gear.chain").report()
@@ -320,13 +367,13 @@ class Job:
         True
         """
         options = {"certify": certify, "step": length(step, "step"), "date": date, "format": ["html"]}
-        return self._page(_flank.report, options, height)
+        return _pages.Report(*self._page(_flank.report, options), height)
 
-    def _page(self, operation: Operation, options: dict[str, Any], height: int) -> _pages.Page:
+    def _page(self, operation: Operation, options: dict[str, Any]) -> tuple[_flank.Answer, _results.Again, str, str]:
         with tempfile.TemporaryDirectory(prefix="flank-") as folder:
             answer, again = self._asked(operation, {**options, "out": folder})
             page = next((file.read_text() for file in Path(folder).glob("*.html")), "")
-        return _pages.Page(answer, again, folder, page, height)
+        return answer, again, folder, page
 
     def measuring_grid(
         self,
@@ -379,15 +426,9 @@ class Job:
             "margin": margin_shares(margin),
             "no_align": not align,
         }
-        with Measured(measured) as (file, inside):
-            native, own = self._native, self[surface].name
-
-            def asked(more: dict[str, Any]) -> _flank.Answer:
-                with Measured(measured) as (again, _):
-                    return _flank.deviation(native, own, {**options, "measured": again, **more})
-
-            answer = _flank.deviation(native, own, {**options, "measured": file})
-            return _results.Deviation(answer, asked, inside, measured)
+        asked = AskedOfMeasured(Asked(_flank.deviation, self, options, (self[surface].name,)), measured)
+        answer, inside = asked.told({})
+        return _results.Deviation(answer, asked, inside, measured)._given()
 
     def fit(
         self,
@@ -448,15 +489,10 @@ class Job:
             base["ease_off"] = parabola(ease_off)
         elif ease_off is not None:
             base["ease_off_table"] = os.fspath(ease_off)
-        native, own = self._native, self[surface].name
-
-        def asked(more: dict[str, Any]) -> tuple[_flank.Answer, str]:
-            with Measured(of) as (file, inside), Measured(None if also is None else also[1]) as (second, _):
-                files = {"measured": file, "and": None if also is None else (also[0], second)}
-                return _flank.fit(native, own, {**base, **files, **more}, other), inside
-
-        answer, inside = asked({})
-        return _results.Fit(answer, lambda more: asked(more)[0], self, inside)
+        asked = AskedOfMeasured(Asked(_flank.fit, self, base, (self[surface].name,), other), of, also)
+        with dimensions(round=round):
+            answer, inside = asked.told({})
+        return _results.Fit(answer, asked, self, inside)
 
     def synthesis(
         self, want: str, *, vary: str | Iterable[str] = (), round: Mapping[str, Quantity] | None = None
@@ -468,9 +504,9 @@ class Job:
         'gear_convex'
         """
         options = {"vary": names(vary), "round": amounts(round or {}, "round")}
-        native = self._native
-        answer = _flank.synthesis(native, want, options)
-        return _results.Synthesis(answer, lambda more: _flank.synthesis(native, want, {**options, **more}), self)
+        asked = Asked(_flank.synthesis, self, options, (want,))
+        with dimensions(round=round):
+            return _results.Synthesis(asked({}), asked, self)
 
     def tolerance(
         self,
@@ -502,9 +538,9 @@ class Job:
             "no_align": not align,
             "sweep": count(sweep, "sweep", 10, 1_000_000),
         }
-        native = self._native
-        answer = _flank.tolerance(native, self[surface].name, options)
-        return _results.Tolerance(answer, lambda more: _flank.tolerance(native, surface, {**options, **more}))
+        asked = Asked(_flank.tolerance, self, options, (self[surface].name,))
+        with dimensions(scatter=scatter, budget=budget):
+            return _results.Tolerance(asked({}), asked)
 
     def contacts(
         self,
@@ -534,10 +570,11 @@ class Job:
             "certify": certify,
             "milled": milled,
         }
-        native = self._native
+        with dimensions(error=errors):
+            found = _flank.contact(self._native, options)
         return {
-            json.loads(answer.document())["contact"]: _results.Contact(answer, _place(_flank.contact, native, options, k))
-            for k, answer in enumerate(_flank.contact(native, options))
+            json.loads(answer.document())["contact"]: _results.Contact(answer, Asked(_flank.contact, self, options, place=k))
+            for k, answer in enumerate(found)
         }
 
     def contact(
@@ -609,10 +646,9 @@ class Job:
             "clamp": ranges(clamp),
             "certify": length(certify, "certify"),
         }
-        native = self._native
         return {
-            json.loads(answer.document())["milling"]: _machines.Milling(answer, _place(_flank.mill, native, options, k))
-            for k, answer in enumerate(_flank.mill(native, options))
+            json.loads(answer.document())["milling"]: _machines.Milling(answer, Asked(_flank.mill, self, options, place=k))
+            for k, answer in enumerate(_flank.mill(self._native, options))
         }
 
     def mill(
@@ -689,14 +725,10 @@ class Job:
             "order": count(order, "order", 0, 30),
             "tolerance": length(tolerance, "tolerance"),
         }
-        native, target = self._native, os.fspath(to)
-        answer = _flank.convert(native, target, options)
+        asked = Asked(_flank.convert, self, options, (os.fspath(to),))
+        answer = asked({})
         is_motion = json.loads(answer.document())["schema"].startswith("flank.convert/")
-
-        def again(more: dict[str, Any]) -> _flank.Answer:
-            return _flank.convert(native, target, {**options, **more})
-
-        return (_machines.Motion if is_motion else _machines.Settings)(answer, again)
+        return (_machines.Motion if is_motion else _machines.Settings)(answer, asked)
 
     def derive(
         self,
@@ -705,33 +737,42 @@ class Job:
         cost: bool = False,
         to: Path_ | None = None,
         surface: str | None = None,
+        tool_frame: str | None = None,
+        work_frame: str | None = None,
     ) -> _machines.Derivation:
-        """The derivation, stage by stage, as text or LaTeX; the axes of the machine in `to` in closed form; or how many operations a point
-        takes (`cost`).
+        """The derivation, stage by stage, as text or LaTeX; the axes of the machine in `to` in closed form, whose frames of tool and work
+        are `tool_frame` and `work_frame`; or how many operations a point takes (`cost`).
 
         >>> import flank
         >>> "equation of meshing" in flank.load("specs/bevel/pinion_19x62.chain").derive().page
         True
         """
-        options = {"latex": latex, "cost": cost, "to": None if to is None else os.fspath(to), "surface": surface}
-        native = self._native
-        answer = _flank.derive(native, options)
-        return _machines.Derivation(answer, lambda more: _flank.derive(native, {**options, **more}))
+        options = {
+            "latex": latex,
+            "cost": cost,
+            "to": None if to is None else os.fspath(to),
+            "surface": surface,
+            "tool_frame": tool_frame,
+            "work_frame": work_frame,
+        }
+        asked = Asked(_flank.derive, self, options)
+        return _machines.Derivation(asked({}), asked)
 
     def _asked(self, operation: Operation, options: dict[str, Any]) -> tuple[_flank.Answer, _results.Again]:
-        native = self._native
-        answers = operation(native, options)
+        answers = operation(self._native, options)
         if not answers:
             raise InputError(f"job {self.name} has nothing of that")
-        return answers[0], _place(operation, native, options, 0)
+        return answers[0], Asked(operation, self, options, place=0)
 
-    def _reference(self, of: Surface | str, options: dict[str, Any], key: str) -> _flank.Job | None:
+    def _reference(self, of: Surface | str, options: dict[str, Any], key: str) -> Job | None:
         """Names the other surface in options, and gives its job if that is another one."""
         if isinstance(of, str):
             options[key] = self[of].name
             return None
+        if not isinstance(of, Surface):
+            raise TypeError(f"`{key}_` is {of!r}: it is a surface of a job, or its name in this one")
         options[key] = of.name
-        return None if of.job is self else of.job._native
+        return None if of.job is self else of.job
 
     def __repr__(self) -> str:
         surfaces = ", ".join(self._surfaces)
@@ -745,8 +786,8 @@ class Job:
         rows = self.parameters._rows()
         plain = f"{self!r}\n\n{_display.aligned(surfaces)}\n\n{_display.aligned(rows)}"
         parts = [
-            f"<b>{self.name}</b> <code>{self.file}</code>",
-            f"<p>{self.doc}</p>" if self.doc else "",
+            f"<b>{html.escape(self.name)}</b> <code>{html.escape(self.file)}</code>",
+            f"<p>{html.escape(self.doc)}</p>" if self.doc else "",
             self._section(),
             _display.table(surfaces, ["surface", "frame", "points"]),
             _display.table(rows, ["name", "value", "range", "given by", "meaning"]),
@@ -777,12 +818,5 @@ class Job:
         return (_restored, (texts[0][0], texts, self.name, self._native.set))
 
 
-Operation = Callable[[_flank.Job, dict[str, Any]], list[_flank.Answer]]
-
-
 def _restored(file: str, texts: list[tuple[str, str]], name: str, overrides: list[tuple[str, str]]) -> Job:
     return Job(_flank.load(file, texts, name, overrides)[0])
-
-
-def _place(operation: Operation, native: _flank.Job, options: dict[str, Any], place: int) -> _results.Again:
-    return lambda more: operation(native, {**options, **more})[place]

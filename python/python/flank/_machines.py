@@ -65,7 +65,6 @@ class Motion(Result):
         with tempfile.TemporaryDirectory(prefix="flank-") as folder:
             files = self._write(folder, **options)
             if not files:
-                self._again({**options}).document()
                 raise NotSolved(str(self._answer.text()), json.dumps(self.not_done))
             return Path(files[0]).read_text()
 
@@ -112,13 +111,18 @@ class Milling(Result):
         return self._write(folder, format=names(formats), nc=names(nc), map=names(map))
 
 
-class Solids(Result):
-    """Bodies: volume, mass, inertia, what gauges find."""
+class _Bodies(Result):
+    def _is_nothing(self) -> bool:
+        return not self._read()["solids"]
 
     @property
     def solids(self) -> dict[str, dict[str, Any]]:
         """The numbers of each body by its name."""
         return {one["name"]: copy.deepcopy(one) for one in self._read()["solids"]}
+
+
+class Solids(_Bodies):
+    """Bodies: volume, mass, inertia, what gauges find."""
 
     def write(self, folder: Path_, formats: str | Iterable[str] = ("step",), *, step: Quantity = "0.1 um") -> list[str]:
         """Writes closed meshes (stl, obj, 3mf) and smooth bodies (step, `step` near to the exact surfaces)."""
@@ -127,13 +131,8 @@ class Solids(Result):
         return self._write(folder, format=[name for name in wanted if name != "step"], step=faces)
 
 
-class Bricks(Result):
+class Bricks(_Bodies):
     """Bodies cut into bricks for finite elements."""
-
-    @property
-    def solids(self) -> dict[str, dict[str, Any]]:
-        """The numbers of each body by its name."""
-        return {one["name"]: copy.deepcopy(one) for one in self._read()["solids"]}
 
     def write(self, folder: Path_, formats: str | Iterable[str] = ("inp",)) -> list[str]:
         """Writes input of CalculiX and Abaqus (inp) and of ParaView (vtu)."""

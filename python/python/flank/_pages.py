@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import tempfile
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from flank import _display
 from flank._errors import InputError
+from flank._quantities import names
 from flank._results import PICTURES, Again, Path_, Result, put
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ class Plot(Result):
     def __init__(self, answer: Answer, again: Again, inside: str, files: Mapping[str, bytes]) -> None:
         super().__init__(answer, again, inside)
         self._files = dict(files)
+        self._shown: dict[str, tuple[str, bytes]] | None = None
 
     @property
     def pictures(self) -> dict[str, dict[str, bytes]]:
@@ -59,9 +62,47 @@ class Plot(Result):
         return str(path)
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
-        first = next(iter(self.pictures.values()), {})
-        svg = first["svg"].decode() if "svg" in first else None
-        return _display.bundle(str(self), svg, first.get("png"))
+        if self._shown is None:
+            self._shown = self._small()
+        return _display.bundle_of(str(self), self._shown)
+
+    def _small(self) -> dict[str, tuple[str, bytes]]:
+        """What a notebook keeps of each picture, all of them together below its limit; what is larger is drawn again, smaller."""
+        files = forms(self._files)
+        # beside its bytes a picture has a name and a frame
+        most = _display.MOST_BYTES // max(len(files), 1) - 300
+        small: dict[str, tuple[str, bytes]] = {}
+        drawn = files
+        while True:
+            small |= {name: picture for name, of in drawn.items() if (picture := _display.kept(of, most)) is not None}
+            large = {name: drawn[name].get("png") for name in files if name not in small}
+            sides = [_display.smaller(png, most) for png in large.values()]
+            wanted = [size for size in sides if size is not None]
+            if not wanted:
+                return {name: small[name] for name in files if name in small}
+            drawn = self._drawn_again(list(large), min(wanted))
+
+    def _drawn_again(self, pictures: list[str], size: tuple[int, int]) -> dict[str, dict[str, bytes]]:
+        kinds = [one["what"] for one in self._read()["pictures"]]
+        what = [kind for kind in dict.fromkeys(kinds) if any(f".{kind}" in name for name in pictures)]
+        with tempfile.TemporaryDirectory(prefix="flank-") as folder:
+            self._again({"what": what, "size": size, "format": ["png"], "out": folder})
+            drawn = forms(read(folder))
+        return {name: drawn[name] for name in pictures}
+
+
+def read(folder: str) -> dict[str, bytes]:
+    """The files of a folder by their names."""
+    return {file.name: file.read_bytes() for file in sorted(Path(folder).iterdir())}
+
+
+def forms(files: Mapping[str, bytes]) -> dict[str, dict[str, bytes]]:
+    """Pictures by their names: of each its forms by the endings of its files."""
+    found: dict[str, dict[str, bytes]] = {}
+    for name, content in files.items():
+        picture, form = name.rsplit(".", 1)
+        found.setdefault(picture, {})[form] = content
+    return found
 
 
 class Page(Result):
@@ -79,3 +120,11 @@ class Page(Result):
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
         return {"text/plain": str(self), "text/html": _display.frame(self.html, self.height)}
+
+
+class Report(Page):
+    """A page about a job, with all its numbers as document."""
+
+    def write(self, folder: Path_, formats: str | Iterable[str] = ("html",)) -> list[str]:
+        """Writes the page (html) and its text with pictures beside it (md)."""
+        return self._write(folder, format=names(formats))

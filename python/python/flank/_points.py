@@ -55,6 +55,9 @@ class SurfacePoints:
         self._reasons = reasons
         self._status: npt.NDArray[np.str_] | None = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (SurfacePoints, (self._grid, self._reasons))
+
     @property
     def name(self) -> str:
         """Of the surface."""
@@ -216,7 +219,6 @@ class SurfacePoints:
         grid: _pyvista.StructuredGrid = package.StructuredGrid()
         grid.points = turned
         grid.dimensions = (rows, columns, 1)
-        grid.points = self.xyz.transpose(1, 0, 2).reshape(-1, 3)
         flat = {"normal": self.normal, "status": self._grid.status, "residual": self.residual}
         for name, values in {**flat, **self.unknowns, **self.fields}.items():
             if values is not None:

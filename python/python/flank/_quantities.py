@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from flank._errors import InputError
+from flank import _flank
+from flank._errors import InputError, SpecError, of_dimension
 
 Quantity = Any
 """A text with a unit, a pair of number and unit, a quantity of pint, or a number."""
@@ -15,22 +17,7 @@ Quantity = Any
 Amount = tuple[str, str, float]
 """A name, the kind of an amount, and its size: mm, radians, a number or a share."""
 
-_DEGREE = math.pi / 180
-_UNITS: dict[str, tuple[str, float]] = {
-    "nm": ("length", 1e-6),
-    "um": ("length", 1e-3),
-    "µm": ("length", 1e-3),
-    "mm": ("length", 1.0),
-    "m": ("length", 1e3),
-    "in": ("length", 25.4),
-    "deg": ("angle", _DEGREE),
-    "arcmin": ("angle", _DEGREE / 60),
-    "arcsec": ("angle", _DEGREE / 3600),
-    "mrad": ("angle", 1e-3),
-    "rad": ("angle", 1.0),
-    "%": ("share", 1e-2),
-    "": ("number", 1.0),
-}
+_LIKE = {"length": ("mm", "a length"), "angle": ("deg", "an angle"), "number": ("", "a number"), "share": ("%", "a share")}
 _TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
 
 
@@ -71,13 +58,32 @@ def _of_pint(value: Any) -> str:
     raise InputError(f"a length, an angle or a number is wanted: not {value}")
 
 
+def _unit(name: str) -> tuple[str, float] | None:
+    """What a unit is one of, and its size in mm, radians or 1; `None` if the language has no such unit."""
+    if name in ("", "%"):
+        return ("share", 1e-2) if name else ("number", 1.0)
+    found = _flank.unit_size(name)
+    return None if found is None else ("angle" if found[0] else "length", found[1])
+
+
 def _parsed(value: Quantity, what: str, example: str) -> tuple[str, float]:
     words = text(value)
     match = _TEXT.fullmatch(words)
-    unit = _UNITS.get(match[2]) if match else None
+    unit = _unit(match[2]) if match else None
     if match is None or unit is None:
-        raise InputError(f"`{what}` is `{words}`: write a number with a unit, for example {example}")
+        known = ", ".join(_flank.units())
+        raise InputError(f"`{what}` is `{words}`: write a number with a unit, for example {example}; units are {known}")
     return unit[0], float(match[1]) * unit[1]
+
+
+def _wrong(option: str, name: str, value: Quantity, *wanted: str) -> SpecError:
+    """A value of another dimension than one of those that are wanted."""
+    is_, _ = _parsed(value, name, "")
+    words = text(value)
+    unit = _LIKE[wanted[0]][0]
+    example = f"{words} {unit}".strip() if is_ == "number" else {"mm": "0.1 mm", "deg": "2 arcmin"}.get(unit, "0.1")
+    named = " or ".join(_LIKE[kind][1] for kind in wanted)
+    return of_dimension(option, (name, words), (named, _LIKE[is_][1]), example)
 
 
 def length(value: Quantity | None, what: str) -> float | None:
@@ -86,10 +92,25 @@ def length(value: Quantity | None, what: str) -> float | None:
         return None
     kind, size = _parsed(value, what, '"0.1 um"')
     if kind != "length":
-        raise InputError(f"`{what}` is `{text(value)}`: write a length with its unit, for example \"0.1 um\"")
+        raise _wrong(what, what, value, "length")
     if size <= 0:
         raise InputError(f"`{what}` is `{text(value)}`: a length above zero is needed")
     return size
+
+
+def seconds(value: float | str | None, what: str) -> float | None:
+    """A time above zero in seconds, `60` or `"60s"`; `None` stays.
+
+    >>> from flank._quantities import seconds
+    >>> seconds("60s", "limit"), seconds(0.5, "limit")
+    (60.0, 0.5)
+    """
+    if isinstance(value, str):
+        match = _TEXT.fullmatch(value)
+        if match is None or match[2] not in ("", "s"):
+            raise InputError(f"`{what}` is {value!r}: write seconds, for example 60 or \"60s\"")
+        value = float(match[1])
+    return number(value, what, 0.0, 1e9)
 
 
 def amounts(values: Mapping[str, Quantity], what: str) -> list[Amount]:
@@ -109,9 +130,28 @@ def errors(values: Mapping[str, Quantity], what: str) -> list[Amount]:
     for name, value in values.items():
         kind, size = _parsed(value, f"{what}[{name!r}]", '"0.1 mm" or "2 arcmin"')
         if kind not in ("length", "angle"):
-            raise InputError(f"`{what}[{name!r}]` is `{text(value)}`: write it with a unit, \"0.1 mm\" or \"2 arcmin\"")
+            raise _wrong(what, name, value, "length", "angle")
         all_of_them.append((name, kind, size))
     return all_of_them
+
+
+_REFUSED = re.compile(r"option `(\w+) (\S+)`: this (?:takes|axis takes|step is) (?:an? |one in )?(length|angle|mm|deg|rad|plain number)")
+_KINDS = {"mm": "length", "deg": "angle", "rad": "angle", "plain number": "number"}
+
+
+@contextlib.contextmanager
+def dimensions(**options: Mapping[str, Quantity] | None) -> Iterator[None]:
+    """Says as the language says it, E0301, that an amount of an option has another dimension than what it is one of: the program knows
+    which that is."""
+    try:
+        yield
+    except InputError as error:
+        refused = _REFUSED.match(str(error))
+        given = (options.get(refused[1]) or {}) if refused else {}
+        if refused is None or refused[2] not in given:
+            raise
+        wanted = _KINDS.get(refused[3], refused[3])
+        raise _wrong(refused[1], refused[2], given[refused[2]], wanted) from None
 
 
 def count(value: int | None, what: str, low: int, high: int) -> int | None:

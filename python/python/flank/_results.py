@@ -6,6 +6,7 @@ import copy
 import json
 import os
 import tempfile
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -46,6 +47,10 @@ class Result:
         # files of a folder that is gone have no path
         self._inside = json.dumps(inside + "/")[1:-1] if inside else ""
         self._document: dict[str, Any] | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        # the document is read again from its text
+        return {**self.__dict__, "_document": None}
 
     def json(self) -> str:
         """The document as JSON, as `--json` prints it."""
@@ -98,21 +103,36 @@ class Result:
         Raises `NotSolved` if something that was asked for was not done.
         """
         if not self.is_complete:
-            missing = self._read()["not_done"]
-            text = "\n".join("\n  ".join([one["message"], *one["details"]]) for one in missing)
-            raise NotSolved(text, json.dumps(missing))
+            raise _not_solved(self._read()["not_done"])
         return self
 
+    def _is_nothing(self) -> bool:
+        """Whether nothing at all was found of what was asked for."""
+        return False
+
+    def _given(self) -> Self:
+        """Itself, unless there is nothing to give."""
+        return self.strict() if self._is_nothing() else self
+
     def _write(self, folder: Path_, **options: Any) -> list[str]:
-        answer = self._again({"out": os.fspath(folder), **options})
-        files: list[str] = json.loads(answer.document())["files"]
+        document = json.loads(self._again({"out": os.fspath(folder), **options}).document())
+        files: list[str] = document["files"]
+        missing: list[dict[str, Any]] = document.get("not_done", [])
+        if missing and not files:
+            raise _not_solved(missing)
+        known = [one["message"] for one in self._read().get("not_done", [])]
+        for one in missing:
+            if one["message"] not in known:
+                warnings.warn(told([one]), stacklevel=3)
         return files
 
     def __str__(self) -> str:
         text = self._answer.text()
         lines = (text.replace(self._inside, "") if self._inside else text).rstrip().splitlines()
         # no file was asked for
-        return "\n".join(line for line in lines if line.strip() != "wrote").rstrip()
+        shown = "\n".join(line for line in lines if line.strip() != "wrote").rstrip()
+        missing = told(self._read().get("not_done", []))
+        return f"{shown}\n\n{missing}" if missing else shown
 
     def __repr__(self) -> str:
         return str(self)
@@ -122,6 +142,15 @@ class Result:
 
     def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, str]:
         return _display.bundle(str(self), self._picture())
+
+
+def told(missing: list[dict[str, Any]]) -> str:
+    """What was not done, and why."""
+    return "\n".join("\n  ".join([one["message"], *one["details"]]) for one in missing)
+
+
+def _not_solved(missing: list[dict[str, Any]]) -> NotSolved:
+    return NotSolved(told(missing), json.dumps(missing))
 
 
 class Points(Result):
@@ -221,6 +250,9 @@ class Deviation(Result):
         super().__init__(answer, again, inside)
         self._measured = measured
 
+    def _is_nothing(self) -> bool:
+        return not self._read()["known"]
+
     @property
     def um(self) -> Floats:
         """The deviation at each point of the grid, um: (rows, columns), NaN where it is not known."""
@@ -309,9 +341,13 @@ class Sensitivity:
     __slots__ = ("names", "units", "values")
 
     def __init__(self, values: Floats, of: list[str], units: list[str]) -> None:
+        values.flags.writeable = False
         self.values = values
         self.names = of
         self.units = units
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Sensitivity, (self.values, self.names, self.units))
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -396,6 +432,26 @@ class _WithSettings(Result):
         """The job with the settings that were found."""
         values = {one["name"]: (one["new"], one["unit"]) for one in self._changed() if not one.get("is_error")}
         return self._job.with_values({name: _with_unit(*value) for name, value in values.items()})
+
+    @property
+    def text(self) -> str:
+        """The text of a spec with the settings that were found, as it stands beside the job's: a variant of the job."""
+        beside = str(Path(self._job.file).parent / f"{self._job.name}_corrected.chain")
+        text: str | None = json.loads(self._again({"write": beside, "dry": True}).document())["corrected"]
+        if text is None:
+            raise self._uncorrected()
+        return text
+
+    def write(self, path: Path_) -> str:
+        """Writes a spec with the settings that were found, a variant of the job, and gives its path. It uses the job's file, and lies in the
+        same project."""
+        files: list[str] = json.loads(self._again({"write": os.fspath(path)}).document())["files"]
+        if not files:
+            raise self._uncorrected()
+        return files[0]
+
+    def _uncorrected(self) -> NotSolved:
+        return NotSolved("no setting is corrected, so there is no spec with corrected settings", json.dumps(self.not_done))
 
     @property
     def table(self) -> dict[str, list[Any]]:

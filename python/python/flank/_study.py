@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import os
+import tempfile
 import warnings
 from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING, Any, Self
@@ -13,10 +14,10 @@ import numpy as np
 import numpy.typing as npt
 
 from flank import _flank
-from flank._cases import distributions, is_path, ranges, table, told
+from flank._cases import distributions, is_path, ranges, sizes, table, told
 from flank._errors import InputError
 from flank._points import needed
-from flank._quantities import Quantity, count as whole, names, number
+from flank._quantities import Quantity, count as whole, dimensions, names, seconds
 
 if TYPE_CHECKING:
     from flank._job import Job
@@ -43,7 +44,11 @@ class Study:
 
     def __init__(self, folder: Path_) -> None:
         self._folder = os.path.abspath(folder)
+        self._temporary: tempfile.TemporaryDirectory[str] | None = None
         _flank.sweep_chunks(self._folder)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return (Study, (self._folder,))
 
     @property
     def folder(self) -> str:
@@ -59,25 +64,31 @@ class Study:
         self,
         chunks: tuple[int, int] | None = None,
         *,
+        part: tuple[int, int] | None = None,
         again: str | Iterable[str] = (),
         on: Any = None,
         threads: int | None = None,
     ) -> Self:
-        """Computes what is missing, or the chunks from the first to the last of two numbers, counted from 0; gives itself.
+        """Computes what is missing, or the chunks from the first to the last of two numbers, counted from 0, or a `part` of all: `(3, 10)` is
+        the fourth of ten. Gives itself.
 
         Cases with a verdict in `again`, `"crashed"` or `"limit"`, are computed anew. `on` is a client of Dask: its workers compute, a chunk
         for a task. They see the folder under the same path. `threads` is how many threads work here; all processors otherwise.
         """
-        last = _flank.sweep_chunks(self._folder) - 1
-        wanted = _chunks(chunks, last) if chunks is not None else None
+        all_of_them = _flank.sweep_chunks(self._folder)
+        wanted = _chunks(chunks, all_of_them - 1) if chunks is not None else None
+        share = _part(part) if part is not None else None
+        if wanted and share:
+            raise InputError("`chunks` and `part` both say which chunks: leave one of them out")
         if on is not None:
             from flank import _dask
 
-            first, last = wanted or (0, last)
-            _dask.run(on, self._folder, range(first, last + 1), names(again))
+            first, end = wanted or (0, all_of_them - 1)
+            of = range(first, end + 1) if share is None else _begun(share, all_of_them)
+            _dask.run(on, self._folder, of, names(again))
         else:
             study = _flank.OpenStudy(self._folder)
-            study.run(wanted, names(again), whole(threads, "threads", 1, 1024))
+            study.run(wanted, names(again), whole(threads, "threads", 1, 1024), share)
         return self
 
     def columns(self) -> dict[str, npt.NDArray[Any]]:
@@ -87,9 +98,22 @@ class Study:
         not known are NaN. A warning says which chunks are missing.
         """
         answer, columns = _flank.sweep_columns(self._folder)
-        for missing in json.loads(answer.document())["not_done"]:
-            warnings.warn(missing["message"], stacklevel=2)
+        _warn_of_missing(answer)
         return {head: np.asarray(values, dtype=np.str_) if head in _WORDS else values for head, values in columns.items()}
+
+    def write(self, path: Path_) -> str:
+        """Writes the rows that are there into a file and gives its path: a table of Parquet where its name ends with .parquet, else CSV.
+        A warning says which chunks are missing.
+
+        >>> import flank, tempfile
+        >>> job = flank.load("specs/bevel/pinion_19x62.chain")
+        >>> study = flank.sweep(job, cases={"m.radial_distance [mm]": [97.9, 98.1]}, collect="points")
+        >>> with tempfile.TemporaryDirectory() as out:
+        ...     len(open(study.write(f"{out}/rows.csv")).readlines())
+        3
+        """
+        _warn_of_missing(_flank.sweep_gather(self._folder, os.fspath(path)))
+        return os.fspath(path)
 
     def frame(self, engine: str = "pandas") -> Any:
         """The columns as a frame of `"pandas"` or `"polars"`."""
@@ -130,6 +154,11 @@ class Study:
         return _flank.sweep_status(self._folder).text().rstrip()
 
 
+def _warn_of_missing(answer: _flank.Answer) -> None:
+    for missing in json.loads(answer.document())["not_done"]:
+        warnings.warn(missing["message"], stacklevel=3)
+
+
 def _kept(file: str) -> dict[str, dict[str, npt.NDArray[Any]]]:
     """The points in a file, by surface and column."""
     with open(file, encoding="utf-8", newline="") as lines:
@@ -165,6 +194,19 @@ def _chunks(chunks: Any, last: int) -> tuple[int, int]:
     return first or 0, end or 0
 
 
+def _part(part: Any) -> tuple[int, int]:
+    if not isinstance(part, tuple | list) or len(part) != 2:
+        raise InputError(f"`part` is {part!r}: write which part, from 0, and of how many, for example (3, 10)")
+    parts = whole(part[1], "parts", 1, 2**62) or 1
+    return whole(part[0], "part", 0, parts - 1) or 0, parts
+
+
+def _begun(part: tuple[int, int], chunks: int) -> range:
+    """The chunks of a part, as the program divides them."""
+    first, end = (which * chunks // part[1] for which in (part[0], part[0] + 1))
+    return range(first, end)
+
+
 def sweep(
     job: Job,
     cases: Any = None,
@@ -176,17 +218,19 @@ def sweep(
     sobol: bool = False,
     collect: str | Iterable[str],
     keep: str | None = None,
-    out: Path_ = "study",
-    limit: float | None = None,
+    out: Path_ | None = None,
+    limit: float | str | None = None,
     on: Any = None,
 ) -> Study:
-    """Solves many cases of a job and keeps a row of numbers for each, as `flank sweep` does, in the folder `out`.
+    """Solves many cases of a job and keeps a row of numbers for each, as `flank sweep` does, in the folder `out`; without one in a folder
+    that is gone when nothing holds the study any more.
 
     One of three says what differs from case to case. `cases` is a table, with units in its heads (`m.radial_distance [mm]`): a dictionary
     of columns, a frame of pandas or polars, or the path of a CSV file. `vary` has two ends and how many values of each, of which all
     combinations are taken: `{"m.radial_distance": ("97.9 mm", "98.1 mm", 21)}`. `scatter` has standard deviations about the job's own values,
     `"10 um"`, or `("uniform", "10 um")` for at most so far; `count`, `seed` and `sobol` belong to it. `collect` has words such as `points` or
-    `ease_off:SURFACE`. With `keep="points"` the points of each case are kept, too, as files: see `Study.points`. A case may take `limit` seconds.
+    `ease_off:SURFACE`. With `keep="points"` the points of each case are kept, too, as files: see `Study.points`. A case may take `limit`
+    seconds, `60` or `"60s"`.
 
     It works on all processors, or on those of `on`, a client of Dask. A study that was killed goes on where it stopped.
 
@@ -207,8 +251,7 @@ def sweep(
     options: dict[str, Any] = {
         "collect": names(collect),
         "keep_points": keep == "points",
-        "out": os.fspath(out),
-        "limit": number(limit, "limit", 0.0, 1e9),
+        "limit": seconds(limit, "limit"),
         "count": whole(count, "count", 1, 100_000_000),
         "seed": whole(seed, "seed", 0, 2**64 - 1),
         "sobol": bool(sobol),
@@ -219,6 +262,10 @@ def sweep(
         options["vary"] = ranges(vary)
     else:
         options |= distributions(scatter or {})
-    with told():
-        _flank.sweep_plan(job._native, options)
-    return Study(out).run(on=on)
+    temporary = tempfile.TemporaryDirectory(prefix="flank-study-") if out is None else None
+    folder = temporary.name if temporary is not None else os.fspath(out or "")
+    with told(), dimensions(scatter=sizes(scatter or {})):
+        _flank.sweep_plan(job._native, {**options, "out": folder})
+    study = Study(folder)
+    study._temporary = temporary
+    return study.run(on=on)
