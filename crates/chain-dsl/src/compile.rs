@@ -99,32 +99,34 @@ impl<'g> Compilation<'g> {
     /// Takes the job of a name out, or all jobs if none is asked for.
     ///
     /// # Errors
-    /// The finding if there is no such job, or no job at all, or a value is given from outside that only jobs have which are not
+    /// What is found if there is no such job, or no job at all, or values are given from outside that only jobs have which are not
     /// asked for.
-    pub fn take_jobs(&mut self, wanted: Option<&str>) -> Result<Vec<Job<'g>>, Diagnostic> {
+    pub fn take_jobs(&mut self, wanted: Option<&str>) -> Result<Vec<Job<'g>>, Vec<Diagnostic>> {
         let mut jobs = std::mem::take(&mut self.jobs);
         let mut others = Vec::new();
         if let Some(wanted) = wanted {
             (jobs, others) = jobs.into_iter().partition(|job| job.name == wanted);
         }
         match &jobs[..] {
-            [] => Err(self.no_job(wanted)),
-            [job, ..] => self.set_elsewhere(job, &others).map_or(Ok(()), Err).map(|()| jobs),
+            [] => Err(vec![self.no_job(wanted)]),
+            [job, ..] => match self.set_elsewhere(job, &others) {
+                findings if findings.is_empty() => Ok(jobs),
+                findings => Err(findings),
+            },
         }
     }
 
-    /// What is said of a value from outside that only jobs have which nobody asks for.
-    fn set_elsewhere(&self, job: &Job<'g>, others: &[Job<'g>]) -> Option<Diagnostic> {
-        let mut owners = self.set.iter().filter_map(|name| {
+    /// What is said of values from outside that only jobs have which nobody asks for.
+    fn set_elsewhere(&self, job: &Job<'g>, others: &[Job<'g>]) -> Vec<Diagnostic> {
+        let findings = self.set.iter().filter_map(|name| {
             let beside = [Some(job), self.machine.as_ref()];
             let is_there = beside.into_iter().flatten().any(|job| job.has_parameter(&name.node));
-            let owner = others.iter().find(|other| other.has_parameter(&name.node)).filter(|_| !is_there);
-            owner.map(|owner| (name, owner))
+            let owner = others.iter().find(|other| other.has_parameter(&name.node)).filter(|_| !is_there)?;
+            let message = format!("job `{}` has no parameter `{}`", job.name, name.node);
+            let help = format!("job `{}` has one, and is not asked for", owner.name);
+            Some(Diagnostic::new(Code::UnknownName, name.span, message).help(help))
         });
-        let (name, owner) = owners.next()?;
-        let message = format!("job `{}` has no parameter `{}`", job.name, name.node);
-        let help = format!("job `{}` has one, and is not asked for", owner.name);
-        Some(Diagnostic::new(Code::UnknownName, name.span, message).help(help))
+        findings.collect()
     }
 
     fn no_job(&mut self, wanted: Option<&str>) -> Diagnostic {
@@ -556,37 +558,51 @@ fn read_overrides(context: &mut Context<'_>, sources: &mut Sources, given: &[(St
     outer
 }
 
+/// What is wrong with the names of values from outside, all of it. Where a text is wrong by itself, parameters may be missing that the right text
+/// has, and nothing is said.
 fn check_overrides<'j, 'g: 'j>(
     context: &mut Context<'_>,
     outer: &OuterValues,
     jobs: impl Iterator<Item = &'j Job<'g>> + Clone,
 ) {
-    for name in &outer.names {
-        if context.has_errors() {
-            return;
-        }
-        let mut owners = jobs.clone().filter(|job| job.has_parameter(&name.node)).peekable();
-        if owners.peek().is_some() {
-            outer.check_owners(context, name, owners);
-            continue;
-        }
-        let mut axes = jobs.clone().flat_map(|job| job.machines.iter().map(move |machine| (job, machine)));
-        let is_axis = axes.any(|(job, machine)| {
-            let is_one = |name: &str| machine.axes.iter().any(|axis| name == format!("{}.{}", machine.name, axis.name));
-            is_one(&name.node) || within(&name.node, &job.name).is_some_and(is_one)
-        });
-        if is_axis {
-            let message = format!("`{}` is an axis, not a parameter: it follows its law", name.node);
-            let help = "set a parameter that its law is made of, or write the law into the spec";
-            context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
-        } else {
-            // with a job's name before it where the name begins so
-            let known = jobs.clone().flat_map(|job| {
-                let of_job = within(&name.node, &job.name).map_or(String::new(), |_| format!("{}.", job.name));
-                job.parameters.iter().map(move |parameter| format!("{of_job}{}", parameter.name))
-            });
-            let known: Vec<String> = known.collect();
-            context.unknown(name, "parameter", known.iter().map(String::as_str));
-        }
+    let is_outer = |span: Span| outer.names.iter().any(|name| name.span.file == span.file);
+    if context.lacks_parameters(is_outer) {
+        return;
     }
+    for name in &outer.names {
+        check_override(context, outer, name, jobs.clone());
+    }
+}
+
+fn check_override<'j, 'g: 'j>(
+    context: &mut Context<'_>,
+    outer: &OuterValues,
+    name: &Name,
+    jobs: impl Iterator<Item = &'j Job<'g>> + Clone,
+) {
+    let mut owners = jobs.clone().filter(|job| job.has_parameter(&name.node)).peekable();
+    if owners.peek().is_some() {
+        return outer.check_owners(context, name, owners);
+    }
+    // a parameter whose value is wrong is not among those of its job
+    if context.taken.contains(&name.span.file) {
+        return;
+    }
+    let mut axes = jobs.clone().flat_map(|job| job.machines.iter().map(move |machine| (job, machine)));
+    let is_axis = axes.any(|(job, machine)| {
+        let is_one = |name: &str| machine.axes.iter().any(|axis| name == format!("{}.{}", machine.name, axis.name));
+        is_one(&name.node) || within(&name.node, &job.name).is_some_and(is_one)
+    });
+    if is_axis {
+        let message = format!("`{}` is an axis, not a parameter: it follows its law", name.node);
+        let help = "set a parameter that its law is made of, or write the law into the spec";
+        return context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+    }
+    // with a job's name before it where the name begins so
+    let known = jobs.flat_map(|job| {
+        let of_job = within(&name.node, &job.name).map_or(String::new(), |_| format!("{}.", job.name));
+        job.parameters.iter().map(move |parameter| format!("{of_job}{}", parameter.name))
+    });
+    let known: Vec<String> = known.collect();
+    context.unknown(name, "parameter", known.iter().map(String::as_str));
 }

@@ -31,7 +31,7 @@ fn number(of: &Value, name: &str) -> f64 {
 fn the_published_pair_is_as_its_table_says() {
     let out = folder("contact");
     let table = reference();
-    let wrong = ["--error", "m.P=0.1mm", "--error", "m.S=2mrad"];
+    let wrong = ["--error", "m.P=0.1mm", "--error", "m.S=0.002rad"];
     for (case, errors) in table["cases"].as_array().expect("cases").iter().zip([&[][..], &wrong]) {
         let arguments = [&["contact", PAIR, "--no-picture", "--out", out.to_str().unwrap()][..], errors].concat();
         let found = document(&arguments, 0);

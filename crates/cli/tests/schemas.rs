@@ -172,6 +172,7 @@ fn comparisons_and_pictures() {
     let sweep = ["sweep", PINION, "--json", "--vary", vary, "--collect", "at:concave[0,0]", "--out", &study];
     judge.run(&sweep, 0);
     judge.run(&["sweep", "status", &study, "--json"], 0);
+    judge.file(&out.join("study/plan.json"));
     judge.run(&[&tolerance[..], &["--budget", "bias=0.001um"]].concat(), 3);
     judge.run(&[&["report", SPUR, "--certify", "--step"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
@@ -182,6 +183,7 @@ fn comparisons_and_pictures() {
         "flank.fit/1",
         "flank.tolerance/1",
         "flank.sweep/1",
+        "flank.sweep_plan/1",
         "flank.plot/2",
         "flank.view/2",
         "flank.measure/1",
@@ -262,7 +264,7 @@ fn failures_of_all_commands() {
 fn schemas_are_sound_and_closed() {
     let mut definitions: BTreeMap<String, Value> = BTreeMap::new();
     let shipped = schemas();
-    assert_eq!(shipped.len(), 32, "no document comes or goes unseen");
+    assert_eq!(shipped.len(), 33, "no document comes or goes unseen");
     for (name, schema) in &shipped {
         assert!(jsonschema::meta::is_valid(schema), "{name} is no schema");
         let (kind, version) =

@@ -71,6 +71,8 @@ pub mod vector;
 
 pub use files::atomic_file::{FileSet, make_folder, write_atomically};
 pub use files::error::{FileError, FolderError, Malformed, WriteError};
+#[cfg(feature = "parquet")]
+pub use files::read_rows::{ParquetFault, parquet_as_csv};
 pub use files::regions::Target;
 #[cfg(feature = "parquet")]
 pub use files::rows::{CellKind, ParquetRows};

@@ -62,7 +62,9 @@ pub use compare::measure::measure;
 pub use compare::measure_result::{FlankHand, FlankPart, MeasureResult, MeasuredFlank, MeasuredPart, MiddlePoint};
 pub use compare::sweep::request::{CaseSource, Distribution, RunRequest, StudyChunks, SweepRequest, VariedRange};
 pub use compare::sweep::result::SweepResult;
-pub use compare::sweep::{OpenStudy, gather_sweep, plan_sweep, run_sweep, sweep_chunks, sweep_status};
+pub use compare::sweep::{
+    OpenStudy, gather_sweep, note_interruption, plan_sweep, run_sweep, sweep_chunks, sweep_status,
+};
 pub use compare::synthesis::result::{CheckedContact, ReachedCondition, SynthesisResult, SynthesizedSetting};
 pub use compare::synthesis::synthesis;
 pub use compare::tolerance::result::{
@@ -117,6 +119,7 @@ pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
 pub use page::{PageParts, page_parts, view, waiting_page};
+pub use project::amount::{AmountFault, read_amount};
 pub use project::answer::{Answer, Timed, Timing};
 pub use project::choices::{
     BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,

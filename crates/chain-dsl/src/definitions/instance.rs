@@ -284,7 +284,10 @@ impl<'a, 'g> Binder<'a, 'g> {
             _ => self.overrides.get(full_name),
         };
         match (overridden, setting, &self.source) {
-            (Some(value), _, _) => Some((value, context.evaluate(value, &Scope::new()), ValueSource::Caller)),
+            (Some(value), _, _) => {
+                context.taken.insert(value.span.file);
+                Some((value, context.evaluate(value, &Scope::new()), ValueSource::Caller))
+            }
             (None, Some(value), Source::Instance { job, .. }) => {
                 Some((value, context.evaluate(value, job), ValueSource::Job))
             }

@@ -9,7 +9,7 @@ use flank_expr::{Expr, Graph, Interval, IntervalEvaluator, Tape, VariableId};
 use crate::definitions::index::KnownValue;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
-use crate::diagnostics::source::{Name, Span};
+use crate::diagnostics::source::{FileId, Name, Span};
 use crate::diagnostics::spelling::closest;
 use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::limits;
@@ -89,6 +89,8 @@ pub(crate) struct Context<'g> {
     reported: HashSet<(Code, Span)>,
     /// The axes of the machine whose constants are being looked at, and the values that they move.
     pub(crate) moving: HashSet<String>,
+    /// Texts of values from outside that a parameter has taken, right or wrong.
+    pub(crate) taken: HashSet<FileId>,
     /// Names that the item being looked at uses without their being defined.
     unknown: HashSet<String>,
     /// Whether a requirement did not hold in the item being looked at.
@@ -135,6 +137,7 @@ impl<'g> Context<'g> {
             diagnostics: Vec::new(),
             errors: 0,
             reported: HashSet::new(),
+            taken: HashSet::new(),
             unknown: HashSet::new(),
             is_unmet: false,
             moving: HashSet::new(),
@@ -225,6 +228,13 @@ impl<'g> Context<'g> {
 
     pub(crate) fn has_errors(&self) -> bool {
         self.errors > 0
+    }
+
+    /// Whether jobs may lack parameters that they have in a right text: a file, a name, a value or a machine is wrong, and that not in the texts
+    /// of values from outside.
+    pub(crate) fn lacks_parameters(&self, is_from_outside: impl Fn(Span) -> bool) -> bool {
+        let is_of_parts = |code: Code| code != Code::Unmet && code < Code::UndrivenAxis;
+        self.diagnostics.iter().any(|finding| is_of_parts(finding.code) && !is_from_outside(finding.span))
     }
 
     /// Number of findings so far, to ask later whether there are new ones.

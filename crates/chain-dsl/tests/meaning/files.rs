@@ -353,9 +353,10 @@ fn jobs_are_taken_by_name() {
         let graph = Graph::new();
         let mut compilation = compile_file(&graph, &folder.join(file), &[]);
         assert!(!compilation.has_errors());
-        let jobs = compilation.take_jobs(wanted).map_err(|finding| {
-            let _ = render(std::slice::from_ref(&finding), &compilation.sources, false);
-            (vec![finding.code], finding.help.unwrap_or_default())
+        let jobs = compilation.take_jobs(wanted).map_err(|findings| {
+            let _ = render(&findings, &compilation.sources, false);
+            let help = findings.iter().find_map(|finding| finding.help.clone()).unwrap_or_default();
+            (findings.iter().map(|finding| finding.code).collect::<Vec<Code>>(), help)
         });
         jobs.map(|jobs| jobs.iter().map(|job| job.name.clone()).collect::<Vec<_>>())
     };
@@ -368,19 +369,43 @@ fn jobs_are_taken_by_name() {
     assert_eq!(codes, [Code::NoJob]);
 }
 
+/// All values from outside are looked at, whatever is wrong with the first.
+#[test]
+fn all_wrong_values_from_outside_are_told() {
+    let own = JOB.replace("job j {", "job j {\n    param width : length in 1 mm .. 3 mm = 1 mm");
+    let folder = project("set-all", &[("library.chain", LIBRARY), ("jobs/j.chain", &own)]);
+    let told = |set: &[(&str, &str)]| -> Vec<String> {
+        let set: Vec<(String, String)> =
+            set.iter().map(|(name, value)| (name.to_string(), value.to_string())).collect();
+        let graph = Graph::new();
+        let compilation = compile_file(&graph, &folder.join("jobs/j.chain"), &set);
+        compilation.diagnostics.iter().map(|finding| format!("{} {}", finding.code.as_str(), finding.message)).collect()
+    };
+    assert_eq!(
+        told(&[("foo", "1"), ("bar", "2")]),
+        ["E0201 there is no parameter `foo`", "E0201 there is no parameter `bar`"]
+    );
+    let codes = |set: &[(&str, &str)]| -> Vec<String> { told(set).iter().map(|told| told[..5].to_string()).collect() };
+    assert_eq!(codes(&[("nonsense", "1 mm"), ("width", "2")]), ["E0201", "E0301"]);
+    assert_eq!(codes(&[("width", "4 mm"), ("nonsense", "1 mm")]), ["E0307", "E0201"]);
+    assert_eq!(codes(&[("width", ")"), ("nonsense", "1 mm")]), ["E0101", "E0201"]);
+}
+
 /// A value that only another job takes would change nothing of the one that is asked for.
 #[test]
 fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
-    let other = JOB.replace("job j {", "job other {\n    param extra : length = 1 mm").replace("use", "//");
+    let other = JOB
+        .replace("job j {", "job other {\n    param extra : length = 1 mm\n    param more : length = 1 mm")
+        .replace("use", "//");
     let folder = project("set", &[("library.chain", LIBRARY), ("jobs/j.chain", &format!("{JOB}{other}"))]);
-    let set = [("extra".to_string(), "2 mm".to_string())];
+    let set = ["extra", "more"].map(|name| (name.to_string(), "2 mm".to_string()));
     let told = |wanted: Option<&str>| {
         let graph = Graph::new();
         let mut compilation = compile_file(&graph, &folder.join("jobs/j.chain"), &set);
         assert!(!compilation.has_errors(), "{}", render(&compilation.diagnostics, &compilation.sources, false));
-        let jobs = compilation.take_jobs(wanted).map_err(|finding| {
-            let shown = render(std::slice::from_ref(&finding), &compilation.sources, false);
-            (finding.code, shown)
+        let jobs = compilation.take_jobs(wanted).map_err(|findings| {
+            let shown = render(&findings, &compilation.sources, false);
+            (findings[0].code, shown)
         });
         jobs.map(|jobs| jobs.len())
     };
@@ -388,7 +413,12 @@ fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
     assert_eq!(told(Some("other")), Ok(1));
     let (code, shown) = told(Some("j")).expect_err("`j` has no such parameter");
     assert_eq!(code, Code::UnknownName);
-    for part in ["job `j` has no parameter `extra`", "extra=2 mm", "job `other` has one, and is not asked for"] {
+    for part in [
+        "job `j` has no parameter `extra`",
+        "job `j` has no parameter `more`",
+        "extra=2 mm",
+        "job `other` has one, and is not asked for",
+    ] {
         assert!(shown.contains(part), "{part} in {shown}");
     }
 }

@@ -3,22 +3,10 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use flank::{MountingError, PointFormat};
+use flank::{AmountFault, MountingError, PointFormat, ToleratedAmount};
 
 use super::choice::described;
 use super::{EvaluatorArguments, JobArguments, count, folder, length};
-
-/// Units of mounting errors, the longer names first where one ends with another; each in mm or radians.
-const UNITS: [(&str, MountingError); 8] = [
-    ("arcmin", MountingError::Angle(std::f64::consts::PI / 180.0 / 60.0)),
-    ("arcsec", MountingError::Angle(std::f64::consts::PI / 180.0 / 3600.0)),
-    ("deg", MountingError::Angle(std::f64::consts::PI / 180.0)),
-    ("mrad", MountingError::Angle(1e-3)),
-    ("rad", MountingError::Angle(1.0)),
-    ("um", MountingError::Length(1e-3)),
-    ("mm", MountingError::Length(1.0)),
-    ("in", MountingError::Length(25.4)),
-];
 
 #[derive(Args, Debug)]
 #[command(after_help = "\
@@ -77,16 +65,12 @@ pub(crate) struct Contact {
 pub(super) fn error(text: &str) -> Result<(String, MountingError), String> {
     let wanted = || "write AXIS=VALUE with a unit, for example m.E=0.1mm or m.S=2arcmin".to_string();
     let (axis, value) = text.split_once('=').ok_or_else(wanted)?;
-    let (axis, value) = (axis.trim(), value.trim());
-    let found = UNITS.into_iter().find_map(|(unit, size)| Some((value.strip_suffix(unit)?, size)));
-    let (digits, size) = found.filter(|_| !axis.is_empty()).ok_or_else(wanted)?;
-    let number: f64 = digits.trim().parse().map_err(|_| wanted())?;
-    if !number.is_finite() {
-        return Err(wanted());
-    }
-    let error = match size {
-        MountingError::Length(mm) => MountingError::Length(number * mm),
-        MountingError::Angle(radians) => MountingError::Angle(number * radians),
+    let axis = Some(axis.trim()).filter(|axis| !axis.is_empty()).ok_or_else(wanted)?;
+    let error = match flank::read_amount(value) {
+        Ok(ToleratedAmount::Length(mm)) => MountingError::Length(mm),
+        Ok(ToleratedAmount::Angle(radians)) => MountingError::Angle(radians),
+        Err(fault @ AmountFault::UnknownUnit(_)) => return Err(fault.to_string()),
+        _ => return Err(wanted()),
     };
     Ok((axis.to_string(), error))
 }

@@ -20,7 +20,7 @@ use std::path::{Path, PathBuf, is_separator};
 
 use clap::builder::{ArgPredicate, PathBufValueParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use flank::{Code, Coefficients, EvaluatorOptions, PointFormat, Signs};
+use flank::{AmountFault, Code, Coefficients, EvaluatorOptions, PointFormat, Signs, ToleratedAmount};
 
 use choice::{described, names};
 
@@ -319,17 +319,11 @@ fn no_file(path: PathBuf) -> Result<PathBuf, String> {
 
 /// A length in mm.
 fn length(text: &str) -> Result<f64, String> {
-    let number = |digits: &str, unit: f64| digits.trim().parse::<f64>().ok().map(|x| x * unit);
-    let text = text.trim();
-    let found = match (text.strip_suffix("um").or(text.strip_suffix("µm")), text.strip_suffix("mm")) {
-        (Some(digits), _) => number(digits, 1e-3),
-        (None, Some(digits)) => number(digits, 1.0),
-        (None, None) => None,
-    };
-    match found.filter(|x| x.is_finite()) {
-        Some(length) if length > 0.0 => Ok(length),
-        Some(_) => Err("a length above zero is needed, for example 0.1um".to_string()),
-        None => Err("write a length with its unit, for example 0.1um".to_string()),
+    match flank::read_amount(text) {
+        Ok(ToleratedAmount::Length(length)) if length > 0.0 => Ok(length),
+        Ok(ToleratedAmount::Length(_)) => Err("a length above zero is needed, for example 0.1um".to_string()),
+        Err(fault @ AmountFault::UnknownUnit(_)) => Err(fault.to_string()),
+        _ => Err("write a length with its unit, for example 0.1um".to_string()),
     }
 }
 

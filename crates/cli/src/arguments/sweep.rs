@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{ArgMatches, Args, Command, Error, FromArgMatches, Subcommand, ValueEnum};
 use flank::{CaseSource, Distribution, RunRequest, StudyChunks, SweepRequest, VariedRange};
 
-use super::tolerance::amount;
+use super::tolerance::above_zero;
 use super::{EvaluatorArguments, JobArguments, count};
 use crate::failure::Failure;
 
@@ -17,7 +17,7 @@ that was killed goes on where it stopped, and several runs may share the chunks 
 Collected: points, requirements, limits, ease_off:SURFACE, width:SURFACE,SURFACE, curvature:SURFACE, at:SURFACE[row,column], contact:CONTACT.
 
 Examples:
-  flank sweep specs/bevel/pinion_19x62.chain --scatter m.radial_distance=normal(10um) --count 1000 --seed 7 --collect ease_off:concave --out study
+  flank sweep specs/bevel/pinion_19x62.chain --scatter 'm.radial_distance=normal(10um)' --count 1000 --seed 7 --collect ease_off:concave --out study
   flank sweep specs/bevel/pinion_19x62.chain --vary 'm.radial_distance=97.9mm..98.1mm by 21' --collect points --out study
   flank sweep plan specs/bevel/pinion_19x62.chain --cases table.csv --collect points --out study
   flank sweep run study --chunks 0..9
@@ -76,7 +76,7 @@ pub(crate) enum SweepStep {
 pub(crate) struct SweepPlan {
     #[command(flatten)]
     pub(crate) which: JobArguments,
-    /// A table of cases: a column for each parameter or setting, with its unit, as `m.radial_distance [mm]`; CSV
+    /// A table of cases: a column for each parameter or setting, with its unit, as `m.radial_distance [mm]`; CSV or Parquet
     #[arg(long, value_name = "FILE", conflicts_with_all = ["vary", "scatter"])]
     pub(crate) cases: Option<PathBuf>,
     /// Values of a parameter from one to another: 'm.radial_distance=97.9mm..98.1mm by 21'; of several all combinations
@@ -86,13 +86,13 @@ pub(crate) struct SweepPlan {
     #[arg(long, value_name = "NAME=DISTRIBUTION", value_parser = scattered)]
     pub(crate) scatter: Vec<(String, Distribution)>,
     /// How many random cases
-    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = count(1..=100_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = count(1..=100_000_000), conflicts_with_all = ["cases", "vary"])]
     pub(crate) count: u32,
     /// Another number gives other random cases
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_hyphen_values = true, conflicts_with_all = ["cases", "vary"])]
     pub(crate) seed: u64,
     /// Scatter by the points of Sobol's sequence, which fill the space evenly
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["cases", "vary"])]
     pub(crate) sobol: bool,
     /// What becomes of each case, several with commas
     #[arg(long, value_name = "WHAT", required = true)]
@@ -153,7 +153,8 @@ pub(crate) struct SweepStatus {
 pub(crate) struct SweepGather {
     /// The folder of the study
     pub(crate) study: PathBuf,
-    /// Write the rows to a file instead of printing them: a table of Parquet where its name ends with .parquet, else CSV
+    /// Write the rows to a file instead of printing them: a table of Parquet where its name ends with .parquet, CSV with .csv or
+    /// without an ending
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Print what is known of the study as JSON; the rows go to --out
@@ -209,16 +210,6 @@ impl SweepPlan {
             evaluator: self.evaluator.evaluator(),
         })
     }
-
-    /// All chunks of the study.
-    pub(crate) fn run_request(&self) -> RunRequest {
-        RunRequest {
-            study: self.out.clone(),
-            chunks: StudyChunks::All,
-            again: Vec::new(),
-            evaluator: self.evaluator.evaluator(),
-        }
-    }
 }
 
 impl SweepRun {
@@ -265,12 +256,17 @@ fn scattered(text: &str) -> Result<(String, Distribution), String> {
     };
     let (name, rest) = text.split_once('=').ok_or_else(wanted)?;
     let (kind, inner) = rest.trim().strip_suffix(')').and_then(|rest| rest.split_once('(')).ok_or_else(wanted)?;
-    let (name, found) = amount(&format!("{}={}", name.trim(), inner.trim()))?;
-    match kind.trim() {
-        "normal" => Ok((name, Distribution::Normal(found))),
-        "uniform" => Ok((name, Distribution::Uniform(found))),
-        _ => Err(wanted()),
-    }
+    let name = Some(name.trim()).filter(|name| !name.is_empty()).ok_or_else(wanted)?;
+    let distribution = match kind.trim() {
+        "normal" => Distribution::Normal(above_zero(inner)?),
+        "uniform" => Distribution::Uniform(above_zero(inner)?),
+        _ => return Err(wanted()),
+    };
+    Ok((name.to_string(), distribution))
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    text.trim().parse().map_err(|_| format!("write a whole number from 0 to {}", u64::MAX))
 }
 
 fn chunks(text: &str) -> Result<(usize, usize), String> {

@@ -5,21 +5,6 @@ use flank::ToleratedAmount;
 
 use super::{EvaluatorArguments, JobArguments, count};
 
-/// Units of amounts, the longer names first where one ends with another; each in mm, radians or 1.
-const UNITS: [(&str, ToleratedAmount); 11] = [
-    ("arcmin", ToleratedAmount::Angle(std::f64::consts::PI / 180.0 / 60.0)),
-    ("arcsec", ToleratedAmount::Angle(std::f64::consts::PI / 180.0 / 3600.0)),
-    ("deg", ToleratedAmount::Angle(std::f64::consts::PI / 180.0)),
-    ("urad", ToleratedAmount::Angle(1e-6)),
-    ("mrad", ToleratedAmount::Angle(1e-3)),
-    ("rad", ToleratedAmount::Angle(1.0)),
-    ("um", ToleratedAmount::Length(1e-3)),
-    ("mm", ToleratedAmount::Length(1.0)),
-    ("in", ToleratedAmount::Length(25.4)),
-    ("%", ToleratedAmount::Share(1e-2)),
-    ("", ToleratedAmount::Number(1.0)),
-];
-
 #[derive(Args, Debug)]
 #[command(after_help = "\
 Settings scatter by one standard deviation each, independently unless --correlation says more. From exact derivatives follows how the
@@ -70,20 +55,18 @@ pub(super) fn amount(text: &str) -> Result<(String, ToleratedAmount), String> {
     let wanted =
         || "write NAME=AMOUNT, for example radial_distance=5um, m.S=1arcmin or ratio_of_roll=0.01%".to_string();
     let (name, value) = text.split_once('=').ok_or_else(wanted)?;
-    let (name, value) = (name.trim(), value.trim());
-    let found = UNITS.into_iter().find_map(|(unit, size)| Some((value.strip_suffix(unit)?, size)));
-    let (digits, size) = found.filter(|_| !name.is_empty()).ok_or_else(wanted)?;
-    let number: f64 = digits.trim().parse().map_err(|_| wanted())?;
-    if !(number.is_finite() && number > 0.0) {
-        return Err("an amount is above zero".to_string());
-    }
-    let amount = match size {
-        ToleratedAmount::Length(mm) => ToleratedAmount::Length(number * mm),
-        ToleratedAmount::Angle(radians) => ToleratedAmount::Angle(number * radians),
-        ToleratedAmount::Number(one) => ToleratedAmount::Number(number * one),
-        ToleratedAmount::Share(share) => ToleratedAmount::Share(number * share),
-    };
-    Ok((name.to_string(), amount))
+    let name = Some(name.trim()).filter(|name| !name.is_empty()).ok_or_else(wanted)?;
+    Ok((name.to_string(), above_zero(value)?))
+}
+
+/// An amount that something scatters by.
+pub(super) fn above_zero(text: &str) -> Result<ToleratedAmount, String> {
+    let amount = flank::read_amount(text).map_err(|fault| fault.to_string())?;
+    let (ToleratedAmount::Length(size)
+    | ToleratedAmount::Angle(size)
+    | ToleratedAmount::Number(size)
+    | ToleratedAmount::Share(size)) = amount;
+    if size > 0.0 { Ok(amount) } else { Err("an amount is above zero".to_string()) }
 }
 
 fn correlation(text: &str) -> Result<([String; 2], f64), String> {

@@ -5,6 +5,7 @@ pub(crate) mod editor;
 pub(crate) mod explain;
 pub(crate) mod fmt;
 pub(crate) mod import;
+mod interruption;
 pub(crate) mod new;
 pub(crate) mod operations;
 pub(crate) mod schema;

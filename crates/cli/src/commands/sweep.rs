@@ -1,7 +1,8 @@
 //! `flank sweep`
 
-use flank::{Answer, SweepResult, gather_sweep, plan_sweep, run_sweep, sweep_status};
+use flank::{Answer, OpenStudy, StudyChunks, SweepResult, gather_sweep, plan_sweep, run_sweep, sweep_status};
 
+use super::interruption;
 use crate::arguments::{Sweep, SweepGather, SweepStep};
 use crate::failure::Failure;
 use crate::progress::Terminal;
@@ -13,10 +14,16 @@ pub(crate) fn run(arguments: &Sweep) -> Result<Ending, Failure> {
     match arguments {
         Sweep::All(plan) => {
             plan_sweep(&plan.request()?, &Terminal)?;
-            Ok(told(&run_sweep(&plan.run_request(), &Terminal)?, json))
+            interruption::watch();
+            // what there is to know has been said by the plan
+            let study = OpenStudy::open(&plan.out, plan.evaluator.evaluator(), &Terminal)?;
+            Ok(told(&study.run(StudyChunks::All, &[], &Terminal)?, json))
         }
         Sweep::Step(SweepStep::Plan(plan)) => Ok(told(&plan_sweep(&plan.request()?, &Terminal)?, json)),
-        Sweep::Step(SweepStep::Run(run)) => Ok(told(&run_sweep(&run.request(), &Terminal)?, json)),
+        Sweep::Step(SweepStep::Run(run)) => {
+            interruption::watch();
+            Ok(told(&run_sweep(&run.request(), &Terminal)?, json))
+        }
         Sweep::Step(SweepStep::Status(of)) => Ok(told(&sweep_status(&of.study)?, json)),
         Sweep::Step(SweepStep::Gather(of)) => gathered(of),
     }

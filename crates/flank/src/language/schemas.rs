@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::fit::result::FitResult;
 use crate::compare::measure_result::MeasureResult;
+use crate::compare::sweep::plan::Plan;
 use crate::compare::sweep::result::SweepResult;
 use crate::compare::synthesis::result::SynthesisResult;
 use crate::compare::tolerance::result::ToleranceResult;
@@ -55,6 +56,7 @@ pub fn schemas() -> Vec<Schema> {
         schema_of::<SynthesisResult>(),
         schema_of::<ToleranceResult>(),
         schema_of::<SweepResult>(),
+        schema_of::<Plan>(),
         schema_of::<MeasureResult>(),
         schema_of::<MillResult>(),
         schema_of::<AxisMotion>(),

@@ -1,5 +1,6 @@
 //! A spec with the files that it uses, and what is found in them.
 
+pub(crate) mod amount;
 pub(crate) mod answer;
 pub(crate) mod choices;
 pub(crate) mod columns;

@@ -139,6 +139,8 @@ pub enum RemarkKind {
     ShortCut,
     /// A program does not say something that it needs.
     Unsaid,
+    /// Cases of a study are not compiled once.
+    FromTexts,
 }
 
 impl<Kind> Message<Kind> {

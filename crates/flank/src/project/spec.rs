@@ -53,7 +53,7 @@ pub(crate) fn asked_for<'g>(
     monitor: &dyn Monitor,
 ) -> Result<Vec<Job<'g>>, Failure> {
     let jobs = compilation.take_jobs(which.job.as_deref());
-    let jobs = jobs.map_err(|finding| Failure::Findings(Findings::new(&[finding], &compilation.sources)))?;
+    let jobs = jobs.map_err(|findings| Failure::Findings(Findings::new(&findings, &compilation.sources)))?;
     set_in_several(which, &jobs).iter().for_each(|remark| monitor.remark(remark));
     Ok(jobs)
 }

@@ -1,32 +1,64 @@
 //! The values of the inputs in each case.
 
-use flank_chain_dsl::Job;
+use flank_chain_dsl::{Code, Job};
+use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::drawn::{MOST_SOBOL, independent, normal, sobol};
-use super::inputs::{KnownInput, StudyInput, size_of_unit};
+use super::drawn::{FARTHEST, MOST_SOBOL, independent, normal, sobol};
+use super::inputs::{KnownInput, StudyInput, Unfit, text};
 use super::request::{CaseSource, Distribution, VariedRange};
+use super::table;
 use crate::project::failure::Failure;
+use crate::project::monitor::Monitor;
 use crate::project::requests::JobSelection;
 use crate::project::units;
 
 /// Cases of a study at the most.
 const MOST_CASES: u64 = 100_000_000;
-/// What is wrong in a table is listed up to so many.
-const LISTED: usize = 20;
-/// Bytes of a table.
-pub(super) const MOST_BYTES: usize = 1 << 30;
+/// Cases whose values are drawn before it is looked at whether some lie beyond their ranges.
+const TOGETHER: u64 = 1 << 20;
 
 /// How the values of a case follow from its number.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
+#[schemars(transform = tell_of_properties)]
 pub(super) enum CaseValues {
     /// One row for each.
     Table(Vec<Vec<f64>>),
     /// First and last value of each input, and how many; the first changes slowest.
     Ranges(Vec<(f64, f64, u32)>),
-    /// Value of the spec, how far it scatters, and whether by a normal distribution.
-    Scatter { about: Vec<(f64, f64, bool)>, count: u64, seed: u64, sobol: bool },
+    /// Random values.
+    Scatter {
+        /// Value of the spec, how far it scatters, and whether by a normal distribution.
+        about: Vec<(f64, f64, bool)>,
+        /// How many cases.
+        count: u64,
+        /// Another number gives other cases.
+        seed: u64,
+        /// Whether they are points of Sobol's sequence.
+        sobol: bool,
+    },
+}
+
+/// The value of a case of the input of a number and a name, drawn about a value of the spec.
+fn drawn(
+    (value, reach, is_normal): (f64, f64, bool),
+    (seed, case, is_sobol): (u64, u64, bool),
+    of: (usize, &str),
+) -> f64 {
+    let share = if is_sobol { sobol(seed, case, of) } else { independent(seed, case, of.1) };
+    value + reach * if is_normal { normal(share) } else { 2.0 * share - 1.0 }
+}
+
+/// What is said of a variant is said of the property that holds it.
+fn tell_of_properties(schema: &mut schemars::Schema) {
+    let variants = schema.get_mut("oneOf").and_then(serde_json::Value::as_array_mut);
+    for variant in variants.into_iter().flatten() {
+        let about = variant["description"].clone();
+        let properties = variant.get_mut("properties").and_then(serde_json::Value::as_object_mut);
+        properties.into_iter().flatten().for_each(|(_, of)| of["description"] = about.clone());
+    }
 }
 
 impl CaseValues {
@@ -60,41 +92,39 @@ impl CaseValues {
                 values.reverse();
                 values
             }
-            CaseValues::Scatter { about, seed, sobol: is_sobol, .. } => {
-                let drawn = about.iter().zip(inputs).enumerate().map(|(k, ((value, reach, is_normal), input))| {
-                    let share = match is_sobol {
-                        true => sobol(*seed, number, (k, &input.name)),
-                        false => independent(*seed, number, &input.name),
-                    };
-                    value + reach * if *is_normal { normal(share) } else { 2.0 * share - 1.0 }
-                });
-                drawn.collect()
+            CaseValues::Scatter { about, seed, sobol, .. } => {
+                let each = about.iter().zip(inputs).enumerate();
+                each.map(|(k, (about, input))| drawn(*about, (*seed, number, *sobol), (k, &input.name))).collect()
             }
         }
     }
 }
 
-/// Inputs and cases of a request; `table` is the text of its table, if it has one.
+/// Inputs and cases of a request.
 ///
 /// # Errors
-/// Unknown names, missing units, values outside their ranges: of the whole table.
+/// Unknown names, missing units, values outside their ranges: of all cases.
 pub(super) fn read(
     job: &Job<'_>,
     which: &JobSelection,
     source: &CaseSource,
-    table: Option<&str>,
+    monitor: &dyn Monitor,
 ) -> Result<(Vec<StudyInput>, CaseValues), Failure> {
     let (inputs, values) = match source {
-        CaseSource::Table(path) => of_table(job, &path.display().to_string(), table.unwrap_or_default())?,
+        CaseSource::Table(path) => {
+            let (inputs, rows) = table::read(job, &path.display().to_string(), &table::read_text(which, path)?)?;
+            (inputs, CaseValues::Table(rows))
+        }
         CaseSource::Ranges(ranges) => of_ranges(job, which, ranges)?,
         CaseSource::Scatter { settings, count, seed, sobol } => {
-            let (inputs, about) = of_scatter(job, settings, *sobol)?;
+            let (known, about) = of_scatter(job, settings, *sobol)?;
+            different(known.iter().map(|known| &known.input))?;
+            within_ranges(&known, &about, (*seed, *count, *sobol), monitor)?;
+            let inputs = known.into_iter().map(|known| known.input).collect();
             (inputs, CaseValues::Scatter { about, count: *count, seed: *seed, sobol: *sobol })
         }
     };
-    if let Some((_, input)) = inputs.iter().enumerate().find(|(k, of)| inputs[..*k].iter().any(|o| o.name == of.name)) {
-        return Err(Failure::Request(format!("`{}` differs from case to case twice: leave one out", input.name)));
-    }
+    different(inputs.iter())?;
     match values.count() {
         0 => Err(Failure::Input("the study has no case".to_string())),
         1..=MOST_CASES => Ok((inputs, values)),
@@ -102,72 +132,72 @@ pub(super) fn read(
     }
 }
 
-fn of_table(job: &Job<'_>, file: &str, text: &str) -> Result<(Vec<StudyInput>, CaseValues), Failure> {
-    let mut wrong = Vec::new();
-    let lines = text.lines().enumerate().map(|(k, line)| (k + 1, line.trim()));
-    let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
-    let heads = lines.next().map_or(Vec::new(), |(_, line)| line.split(',').map(head).collect());
-    let mut columns: Vec<KnownInput> = Vec::new();
-    for (name, unit) in &heads {
-        match column(job, name, *unit) {
-            Ok(column) => columns.push(column),
-            Err(Failure::Input(reason)) => wrong.push(format!("{file}:1: {reason}")),
-            Err(other) => return Err(other),
-        }
+/// # Errors
+/// If an input is there twice.
+fn different<'i>(inputs: impl Iterator<Item = &'i StudyInput>) -> Result<(), Failure> {
+    let names: Vec<&String> = inputs.map(|input| &input.name).collect();
+    match names.iter().enumerate().find(|(k, name)| names[..*k].contains(name)) {
+        Some((_, name)) => Err(Failure::Request(format!("`{name}` differs from case to case twice: leave one out"))),
+        None => Ok(()),
     }
-    let mut rows = Vec::new();
-    for (number, line) in lines.take_while(|_| columns.len() == heads.len()) {
-        let cells: Vec<&str> = line.split(',').map(str::trim).collect();
-        if cells.len() != columns.len() {
-            let [values, heads] =
-                [(cells.len(), "value"), (columns.len(), "column")].map(|(n, of)| units::counted(n, of));
-            wrong.push(format!("{file}:{number}: {values} in {heads}"));
+}
+
+/// Looks at all values that will be drawn, without computing a case; of very many only until some are found that lie beyond.
+///
+/// # Errors
+/// How many lie beyond the range of their input, or that the work is cancelled.
+fn within_ranges(
+    known: &[KnownInput],
+    about: &About,
+    (seed, count, sobol): (u64, u64, bool),
+    monitor: &dyn Monitor,
+) -> Result<(), Failure> {
+    let mut wrong = Vec::new();
+    for (k, (input, about)) in known.iter().zip(about).enumerate() {
+        let (value, reach, is_normal) = *about;
+        let most = reach * if is_normal { FARTHEST } else { 1.0 };
+        if ![value - most, value + most].iter().any(|end| input.is_beyond(*end)) {
             continue;
         }
-        let row: Vec<Option<f64>> = cells.iter().map(|cell| cell.parse().ok()).collect();
-        for ((cell, value), column) in cells.iter().zip(&row).zip(&columns) {
-            let reason = match value {
-                Some(value) => column.refused(*value),
-                None => Some(format!("`{cell}` is no number")),
-            };
-            wrong.extend(reason.map(|reason| format!("{file}:{number}: {reason}")));
+        let draw = |case: u64| drawn(*about, (seed, case, sobol), (k, &input.input.name));
+        for first in (0..count).step_by(TOGETHER as usize) {
+            crate::project::session::check(monitor)?;
+            let looked_at = count.min(first + TOGETHER);
+            let beyond: Vec<u64> =
+                (first..looked_at).into_par_iter().filter(|case| input.is_beyond(draw(*case))).collect();
+            if let Some(case) = beyond.first() {
+                let first = (*case, draw(*case));
+                wrong.push(told_beyond(input, about, first, (beyond.len(), looked_at, count)).to_string());
+                break;
+            }
         }
-        rows.push(row.into_iter().map(|value| value.unwrap_or(f64::NAN)).collect());
     }
-    if wrong.is_empty() {
-        return Ok((columns.into_iter().map(|column| column.input).collect(), CaseValues::Table(rows)));
-    }
-    let more = wrong.len().saturating_sub(LISTED);
-    wrong.truncate(LISTED);
-    wrong.extend((more > 0).then(|| format!("and {more} more")));
-    Err(Failure::Input(wrong.join("\n")))
+    if wrong.is_empty() { Ok(()) } else { Err(Failure::Input(wrong.join("\n"))) }
 }
 
-/// `m.radial_distance [mm]`
-fn head(text: &str) -> (String, Option<&str>) {
-    match text.trim().split_once('[') {
-        Some((name, rest)) => (name.trim().to_string(), Some(rest.trim_end_matches(']').trim())),
-        None => (text.trim().to_string(), None),
-    }
-}
-
-/// # Errors
-/// That there is no such input, or that its unit is missing or another one.
-fn column(job: &Job<'_>, name: &str, unit: Option<&str>) -> Result<KnownInput, Failure> {
-    let known = KnownInput::named(job, name)?;
-    let own = known.input.unit.clone();
-    let unit = match unit {
-        None if own.is_empty() => return Ok(known),
-        None => return Err(Failure::Input(format!("column `{name}` has no unit: write `{name} [{own}]`"))),
-        Some(unit) => unit,
+/// What is said of values beyond a range: how many, the first of them by its case, and how far a value may scatter.
+fn told_beyond(
+    input: &KnownInput,
+    (about, ..): &(f64, f64, bool),
+    (case, value): (u64, f64),
+    (beyond, looked_at, count): (usize, u64, u64),
+) -> Unfit {
+    let (name, unit) = (&input.input.name, &input.input.unit);
+    let all = if looked_at == count { format!("{count} cases") } else { format!("the first {looked_at} cases") };
+    let room = input.range.map_or(0.0, |(low, high)| {
+        let about = about * input.size();
+        (about - low).min(high - about)
+    });
+    let way_out = match units::as_given(input.dimension, room) {
+        room_is if room > 0.0 => format!("scatter it by less; uniform({room_is}) stays within"),
+        _ => "its value lies at an end of the range".to_string(),
     };
-    let is_fitting = unit == own || size_of_unit(unit).is_some_and(|(_, dimension)| dimension == known.dimension);
-    if !is_fitting {
-        let wanted =
-            if own.is_empty() { "it is a plain number".to_string() } else { format!("write `{name} [{own}]`") };
-        return Err(Failure::Input(format!("column `{name}`: `{unit}` is no unit of it; {wanted}")));
-    }
-    Ok(KnownInput { input: StudyInput { unit: unit.to_string(), ..known.input }, ..known })
+    let message = format!(
+        "option `scatter {name}`: {beyond} of {all} lie outside its range {}, the first is case {case} with {}: {way_out}",
+        input.shown_range(),
+        text(value, unit)
+    );
+    Unfit::new(Code::OutOfRange, message)
 }
 
 fn of_ranges(
@@ -179,10 +209,6 @@ fn of_ranges(
     let mut ends = Vec::new();
     for VariedRange { name, ends: texts, count } in ranges {
         let known = KnownInput::named(job, name)?;
-        if known.input.is_axis {
-            let message = format!("option `vary {name}`: an axis of a contact is scattered, or stands in a table");
-            return Err(Failure::Request(message));
-        }
         let mut values = [0.0; 2];
         for (value, text) in values.iter_mut().zip(texts) {
             *value = end_of_range(which, &job.name, &known, text)?;
@@ -208,6 +234,16 @@ fn of_ranges(
 /// If it is none that the input may have. A text that goes wrong with it otherwise is a matter of the cases.
 fn end_of_range(which: &JobSelection, job: &str, known: &KnownInput, text: &str) -> Result<f64, Failure> {
     let name = &known.input.name;
+    let lone = || {
+        let value = flank_chain_dsl::lone_value(text, known.dimension)?;
+        Some(plain(units::shown(known.dimension, value), &known.input.unit))
+    };
+    if known.input.is_axis {
+        let unit = &known.input.unit;
+        let message =
+            || format!("option `vary {name}`: `{text}` is no value of it: write a number with its unit, as 0.1 {unit}");
+        return lone().ok_or_else(|| Unfit::new(Code::WrongDimension, message()).into());
+    }
     let mut set: Vec<(String, String)> = which.set.iter().filter(|(other, _)| other != name).cloned().collect();
     set.push((name.clone(), text.to_string()));
     match which.project.job(job, &set) {
@@ -216,9 +252,7 @@ fn end_of_range(which: &JobSelection, job: &str, known: &KnownInput, text: &str)
             Ok(found.map_or(f64::NAN, |of| plain(of.value, &of.unit)))
         }
         Err(Failure::Findings(findings)) => {
-            let value = flank_chain_dsl::lone_value(text, known.dimension);
-            let value = value.map(|value| plain(units::shown(known.dimension, value), &known.input.unit));
-            let allowed = value.filter(|value| known.refused(*value).is_none());
+            let allowed = lone().filter(|value| known.refused(*value).is_none());
             allowed.ok_or(Failure::Findings(findings))
         }
         Err(other) => Err(other),
@@ -236,13 +270,13 @@ fn of_scatter(
     job: &Job<'_>,
     settings: &[(String, Distribution)],
     is_sobol: bool,
-) -> Result<(Vec<StudyInput>, About), Failure> {
+) -> Result<(Vec<KnownInput>, About), Failure> {
     if is_sobol && settings.len() > MOST_SOBOL {
         let message =
             format!("option `sobol`: at most {MOST_SOBOL} settings scatter by it, {} are named", settings.len());
         return Err(Failure::Request(message));
     }
-    let mut inputs = Vec::new();
+    let mut all = Vec::new();
     let mut about = Vec::new();
     for (name, distribution) in settings {
         let known = KnownInput::named(job, name)?;
@@ -252,9 +286,9 @@ fn of_scatter(
             reach,
             matches!(distribution, Distribution::Normal(_)),
         ));
-        inputs.push(known.input);
+        all.push(known);
     }
-    Ok((inputs, about))
+    Ok((all, about))
 }
 
 #[cfg(test)]

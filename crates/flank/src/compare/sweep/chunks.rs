@@ -1,7 +1,7 @@
 //! Work on the chunks of a study. A chunk is a file that is there whole or not at all: who is killed begins it again.
 
-use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashSet};
+use std::ffi::OsString;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 use flank_export::{CellKind, WriteError};
 use rayon::prelude::*;
 
-use super::plan::{Plan, write_text};
+use super::journal::Journal;
+use super::plan::{CHUNKS, OPEN, POINTS, Plan, write_text};
 use super::row::{Cases, Found};
 use super::stored::{StoredChunk, StoredRows};
 use crate::project::failure::Failure;
@@ -22,14 +23,12 @@ use crate::project::session::{EvaluatorOptions, Session};
 const TOGETHER: usize = 64;
 /// A chunk that was begun so often and never ended is gone through case by case.
 const CAREFUL: u32 = 2;
-/// A case that was worked on so often when the program ended is not tried again. What ends programs at random hits one case so often only
-/// by a chance of one in thousands: each run goes on with the case at which the last one ended, and keeps what it has computed.
+/// A case that was worked on so often when the program ended, and nobody ended it, is not tried again. What ends programs at random hits one
+/// case so often only by a chance of one in thousands: each run goes on with the case at which the last one ended, and keeps what it has
+/// computed.
 const DEADLY: u32 = 5;
 /// The file of a study in which times stand: rows have none, so that equal chunks are equal bytes.
 pub(super) const LOG: &str = "log";
-/// The folder of a study in which points of cases are kept.
-pub(super) const POINTS: &str = "points";
-
 /// Numbers of failed cases that are listed.
 const LISTED: usize = 100;
 
@@ -42,6 +41,8 @@ pub(super) struct Tally {
     pub(super) damaged: Vec<PathBuf>,
     /// Rows by their verdict.
     pub(super) verdicts: BTreeMap<String, u64>,
+    /// Why the first row of each verdict has it, where that is said.
+    pub(super) whys: BTreeMap<String, String>,
     /// Numbers of the first cases whose verdict is not `done`.
     pub(super) failed: Vec<u64>,
 }
@@ -54,7 +55,10 @@ impl Tally {
             let verdict = plan.verdict_of(row);
             match self.verdicts.get_mut(verdict) {
                 Some(count) => *count += 1,
-                None => _ = self.verdicts.insert(verdict.to_string(), 1),
+                None => {
+                    self.verdicts.insert(verdict.to_string(), 1);
+                    self.whys.insert(verdict.to_string(), plan.why_of(row).to_string());
+                }
             }
             if verdict != "done" && self.failed.len() < LISTED {
                 self.failed.push(number);
@@ -107,8 +111,15 @@ impl Plan {
         tally: &mut Tally,
         each: &mut dyn FnMut(&str) -> Result<(), WriteError>,
     ) -> Result<(), WriteError> {
+        let listed = std::fs::read_dir(folder.join(CHUNKS)).into_iter().flatten();
+        let mut files: HashSet<OsString> = listed.flatten().map(|file| file.file_name()).collect();
         for chunk in 0..self.chunks() {
+            // of millions of chunks most may not be there, and the name of each takes the values of all its cases
+            if files.is_empty() {
+                return Ok(());
+            }
             let stored = self.stored(folder, chunk);
+            files.remove(stored.file.file_name().unwrap_or_default());
             match stored.rows {
                 StoredRows::Missing => {}
                 StoredRows::Damaged => tally.damaged.push(stored.file),
@@ -164,12 +175,16 @@ impl Work<'_> {
             }
             StoredRows::Missing | StoredRows::Damaged => vec![None; self.plan.numbers(chunk).count()],
         };
-        let journal = Journal::begin(&self.folder.join("open").join(&hash))?;
+        let journal = Journal::begin(&self.folder.join(OPEN).join(&hash))?;
         let rows = if journal.attempts > CAREFUL {
-            self.one_by_one(chunk, known, &journal)?
+            self.one_by_one(chunk, known, &journal)
         } else {
-            self.together(chunk, known)?
+            self.together(chunk, known)
         };
+        if matches!(rows, Err(Failure::Cancelled)) {
+            journal.stop();
+        }
+        let rows = rows?;
         let text = format!("{}\n{}\n", self.plan.head(), rows.join("\n"));
         write_text(&file, &text)?;
         journal.end();
@@ -252,72 +267,4 @@ impl Monitor for CaseMonitor {
         }
         self.is_late.load(Ordering::Relaxed)
     }
-}
-
-/// What is known of a chunk that was begun: how often, which cases were worked on when the program ended, and the rows that were computed
-/// one by one. A text of lines `begun`, `enter NUMBER`, `row NUMBER ROW`, each added to the end; what was cut off in the middle of a line
-/// does not count.
-struct Journal {
-    file: RefCell<std::fs::File>,
-    path: PathBuf,
-    attempts: u32,
-    deaths: HashMap<u64, u32>,
-    rows: HashMap<u64, String>,
-}
-
-impl Journal {
-    /// One more attempt.
-    fn begin(path: &Path) -> Result<Journal, Failure> {
-        let text = std::fs::read_to_string(path).unwrap_or_default();
-        let (mut attempts, mut deaths, mut rows) = (1, HashMap::new(), HashMap::new());
-        for line in text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n')) {
-            let mut words = line.splitn(3, ' ');
-            let (kind, number, rest) = (words.next(), words.next(), words.next());
-            match (kind, number.and_then(|number| number.parse().ok()), rest) {
-                (Some("begun"), ..) => attempts += 1,
-                (Some("enter"), Some(number), _) => *deaths.entry(number).or_default() += 1,
-                (Some("row"), Some(number), Some(row)) => _ = rows.insert(number, row.to_string()),
-                _ => {}
-            }
-        }
-        let file =
-            std::fs::OpenOptions::new().create(true).append(true).open(path).map_err(|why| unwritten(path, &why))?;
-        let journal = Journal { file: RefCell::new(file), path: path.to_path_buf(), attempts, deaths, rows };
-        // a line that was cut off ends here
-        journal.add("\nbegun")?;
-        Ok(journal)
-    }
-
-    fn add(&self, line: &str) -> Result<(), Failure> {
-        let written = self.file.borrow_mut().write_all(format!("{line}\n").as_bytes());
-        written.map_err(|why| unwritten(&self.path, &why))
-    }
-
-    /// How often the program ended while a case was worked on.
-    fn deaths(&self, number: u64) -> u32 {
-        self.deaths.get(&number).copied().unwrap_or(0)
-    }
-
-    /// The row of a case, if an earlier run computed it.
-    fn row(&self, number: u64) -> Option<String> {
-        self.rows.get(&number).cloned()
-    }
-
-    /// A case is worked on: until its row is there, the program may end by it.
-    fn enter(&self, number: u64) -> Result<(), Failure> {
-        self.add(&format!("enter {number}"))
-    }
-
-    fn leave(&self, number: u64, row: &str) -> Result<(), Failure> {
-        self.add(&format!("row {number} {row}"))
-    }
-
-    /// The chunk is there. A journal that stays says nothing.
-    fn end(self) {
-        _ = std::fs::remove_file(&self.path);
-    }
-}
-
-fn unwritten(path: &Path, why: &std::io::Error) -> Failure {
-    Failure::Input(format!("cannot write {}: {why}", path.display()))
 }

@@ -5,6 +5,8 @@ use sha2::{Digest, Sha256};
 
 /// Settings that points of Sobol's sequence can scatter.
 pub(super) const MOST_SOBOL: usize = 21;
+/// No normal number is farther from its mean, in standard deviations: shares have [`DIGITS`] binary digits.
+pub(super) const FARTHEST: f64 = 8.3;
 /// Binary digits of a point.
 const DIGITS: usize = 52;
 /// Degree and coefficients of the primitive polynomials of dimensions 2 to 21, and the first direction numbers (Joe, Kuo 2008,
@@ -233,6 +235,12 @@ mod tests {
         ] {
             assert!((normal(share) - known).abs() <= 2e-15 * known.abs().max(1.0), "{share}: {}", normal(share));
         }
+    }
+
+    #[test]
+    fn no_normal_number_is_farther_than_the_farthest() {
+        let ends = [within(0), within((1 << DIGITS) - 1)].map(normal);
+        assert!(ends.iter().all(|end| end.abs() < FARTHEST && end.abs() > FARTHEST - 0.2), "{ends:?}");
     }
 
     #[test]

@@ -1,6 +1,9 @@
 //! What differs from case to case: settings of a job, and axes of the machines of its contacts.
 
-use flank_chain_dsl::{Dimension, Job, Parameter};
+use std::fmt;
+
+use flank_chain_dsl::{Code, Dimension, Job, Parameter, closest};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::request::Distribution;
@@ -9,7 +12,7 @@ use crate::project::requests::{MountingError, ToleratedAmount};
 use crate::project::units;
 
 /// Something that has another value in each case.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub(super) struct StudyInput {
     /// As the job knows it.
     pub(super) name: String,
@@ -17,6 +20,31 @@ pub(super) struct StudyInput {
     pub(super) unit: String,
     /// Whether it is an axis of a contact, which is added to, rather than a parameter or setting.
     pub(super) is_axis: bool,
+}
+
+/// Why something cannot be an input, or a value of one.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Unfit {
+    code: Code,
+    message: String,
+}
+
+impl Unfit {
+    pub(super) fn new(code: Code, message: impl Into<String>) -> Unfit {
+        Unfit { code, message: message.into() }
+    }
+}
+
+impl fmt::Display for Unfit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({})", self.message, self.code.as_str())
+    }
+}
+
+impl From<Unfit> for Failure {
+    fn from(unfit: Unfit) -> Failure {
+        Failure::Input(unfit.to_string())
+    }
 }
 
 /// What a job says of an input.
@@ -34,7 +62,7 @@ impl KnownInput {
     ///
     /// # Errors
     /// Which there are, if there is none of that name.
-    pub(super) fn named(job: &Job<'_>, name: &str) -> Result<KnownInput, Failure> {
+    pub(super) fn named(job: &Job<'_>, name: &str) -> Result<KnownInput, Unfit> {
         let axes = job.contacts.iter().flat_map(|contact| &contact.errors);
         if let Some(axis) = axes.into_iter().find(|axis| axis.name == name) {
             let unit = units::whole_symbol(axis.dimension);
@@ -97,21 +125,35 @@ impl KnownInput {
     }
 
     /// Why a value cannot be one of this, if so; in its unit.
-    pub(super) fn refused(&self, value: f64) -> Option<String> {
-        let (name, inside) = (&self.input.name, value * self.size());
+    pub(super) fn refused(&self, value: f64) -> Option<Unfit> {
+        let name = &self.input.name;
         if !value.is_finite() {
-            return Some(format!("`{name}` is no finite number"));
+            return Some(Unfit::new(Code::NotANumber, format!("`{name}` is no finite number")));
         }
         if self.is_count && value.fract() != 0.0 {
-            return Some(format!("`{name}` is a count, and {value} is no whole number"));
+            let message = format!("`{name}` is a count, and {value} is no whole number");
+            return Some(Unfit::new(Code::NotANumber, message));
         }
-        let (low, high) = self.range?;
-        // a conversion of units may round
-        let slack = 1e-12 * low.abs().max(high.abs());
-        (inside < low - slack || inside > high + slack).then(|| {
-            let [low, high] = [low, high].map(|end| units::as_given(self.dimension, end));
-            format!("`{name}` is {}, outside its range {low} .. {high}", text(value, &self.input.unit))
+        self.is_beyond(value).then(|| {
+            let (value, range) = (text(value, &self.input.unit), self.shown_range());
+            Unfit::new(Code::OutOfRange, format!("`{name}` is {value}, outside its range {range}"))
         })
+    }
+
+    /// Whether a value in its unit lies outside its range.
+    pub(super) fn is_beyond(&self, value: f64) -> bool {
+        let inside = value * self.size();
+        self.range.is_some_and(|(low, high)| {
+            // a conversion of units may round
+            let slack = 1e-12 * low.abs().max(high.abs());
+            inside < low - slack || inside > high + slack
+        })
+    }
+
+    /// Both ends of its range, if it has one.
+    pub(super) fn shown_range(&self) -> String {
+        let end = |end: f64| units::as_given(self.dimension, end);
+        self.range.map_or(String::new(), |(low, high)| format!("{} .. {}", end(low), end(high)))
     }
 }
 
@@ -137,34 +179,42 @@ impl StudyInput {
 }
 
 /// A parameter or a setting, by its whole name or the last part of it.
-fn parameter<'j, 'g>(job: &'j Job<'g>, name: &str) -> Result<&'j Parameter<'g>, Failure> {
+fn parameter<'j, 'g>(job: &'j Job<'g>, name: &str) -> Result<&'j Parameter<'g>, Unfit> {
     let own = name.strip_prefix(&format!("{}.", job.name)).unwrap_or(name);
     if let Some(whole) = job.parameters.iter().find(|of| of.name == own) {
         return Ok(whole);
     }
     let found: Vec<&Parameter<'g>> =
         job.parameters.iter().filter(|of| of.name.rsplit('.').next() == Some(own)).collect();
-    let list =
-        |of: &mut dyn Iterator<Item = &String>| of.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     match found[..] {
         [one] => Ok(one),
-        [] => {
-            let axes = job.contacts.iter().flat_map(|contact| contact.errors.iter().map(|axis| &axis.name));
-            let known = list(&mut job.parameters.iter().map(|of| &of.name).chain(axes));
-            Err(Failure::Input(format!(
-                "job `{}` has no parameter, setting or axis of a contact `{name}`; there is: {known}",
-                job.name
-            )))
-        }
+        [] => Err(unknown(job, name)),
         _ => {
-            let known = list(&mut found.iter().map(|of| &of.name));
-            Err(Failure::Input(format!("several settings end with `{name}`; say which: {known}")))
+            let known = quoted(found.iter().map(|of| &of.name));
+            Err(Unfit::new(Code::UnknownName, format!("several settings end with `{name}`; say which: {known}")))
         }
     }
 }
 
+fn unknown(job: &Job<'_>, name: &str) -> Unfit {
+    let axes = job.contacts.iter().flat_map(|contact| contact.errors.iter().map(|axis| &axis.name));
+    let known: Vec<&String> = job.parameters.iter().map(|of| &of.name).chain(axes).collect();
+    // a name may be the last part of a whole one
+    let parts = known.iter().flat_map(|of| [of.as_str(), of.rsplit('.').next().unwrap_or_default()]);
+    let way_out = match closest(name, parts) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("there is: {}", quoted(known.iter().copied())),
+    };
+    let message = format!("job `{}` has no parameter, setting or axis of a contact `{name}`; {way_out}", job.name);
+    Unfit::new(Code::UnknownName, message)
+}
+
+fn quoted<'n>(names: impl Iterator<Item = &'n String>) -> String {
+    names.map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
 /// A value with its unit, the shortest that is the same number.
-fn text(value: f64, unit: &str) -> String {
+pub(super) fn text(value: f64, unit: &str) -> String {
     match unit.strip_prefix("1/") {
         Some(below) => format!("{value} / (1 {below})"),
         None => format!("{value} {unit}").trim_end().to_string(),

@@ -4,12 +4,14 @@ mod cases;
 mod chunks;
 mod drawn;
 mod inputs;
-mod plan;
+mod journal;
+pub(crate) mod plan;
 pub(crate) mod request;
 pub(crate) mod result;
 mod row;
 mod stored;
 mod study;
+mod table;
 
 use std::path::Path;
 use std::time::Instant;
@@ -18,8 +20,9 @@ use flank_export::{ParquetRows, write_atomically};
 use flank_expr::Graph;
 
 use self::chunks::Tally;
-use self::plan::{Plan, VERSION};
-use self::request::{CaseSource, RunRequest, SweepRequest};
+pub use self::journal::note_interruption;
+use self::plan::Plan;
+use self::request::{RunRequest, SweepRequest};
 use self::result::SweepResult;
 use self::row::{Cases, Collected};
 pub use self::study::OpenStudy;
@@ -28,7 +31,7 @@ use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::JobSelection;
 use crate::project::session::Session;
-use crate::project::spec::{self, Origin};
+use crate::project::spec;
 use crate::project::{shown_path, units};
 
 /// A chunk takes about so long, seconds.
@@ -57,19 +60,13 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         return Err(Failure::Request(message.to_string()));
     }
     let which = JobSelection { job: Some(job.name.clone()), ..request.jobs.clone() };
-    let table = match &request.cases {
-        CaseSource::Table(path) => {
-            let mut origin = Origin::default();
-            Some(origin.other_text(which.project.files(), path, cases::MOST_BYTES)?)
-        }
-        _ => None,
-    };
-    let (inputs, values) = cases::read(job, &which, &request.cases, table.as_deref())?;
+    let (inputs, values) = cases::read(job, &which, &request.cases, monitor)?;
     let collect = Collected::read_all(&request.collect)?;
     collect.iter().try_for_each(|of| of.check(job))?;
     let session = Session::new(request.evaluator, monitor);
     let chunk = {
         let tried = Cases::new(which.clone(), inputs.clone(), (&request.collect, None), session)?;
+        tried.from_texts(&job.name).iter().for_each(|remark| monitor.remark(remark));
         let start = Instant::now();
         let count = TRIED.min(values.count());
         for number in 0..count {
@@ -91,9 +88,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
         ..Plan::new(&which, main, hash)
     };
     let plan = kept_plan(&request.out, plan)?;
-    for folder in ["chunks", "open"].into_iter().chain(plan.keep_points.then_some(chunks::POINTS)) {
-        flank_export::make_folder(&request.out.join(folder))?;
-    }
+    plan.make_folders(&request.out)?;
     plan.write(&request.out)?;
     Ok(told(&request.out, &plan))
 }
@@ -103,7 +98,7 @@ fn kept_plan(folder: &Path, plan: Plan) -> Result<Plan, Failure> {
     if !folder.join(plan::PLAN).exists() {
         return Ok(plan);
     }
-    let there = Plan::read(folder)?;
+    let there = Plan::read_own(folder)?;
     if (Plan { chunk: there.chunk, ..plan }) == there {
         return Ok(there);
     }
@@ -118,7 +113,9 @@ fn kept_plan(folder: &Path, plan: Plan) -> Result<Plan, Failure> {
 /// # Errors
 /// If there is no study, its texts are not those of its plan, something cannot be written, or the work is cancelled.
 pub fn run_sweep(request: &RunRequest, monitor: &dyn Monitor) -> Result<SweepResult, Failure> {
-    OpenStudy::open(&request.study, request.evaluator, monitor)?.run(request.chunks, &request.again, monitor)
+    let study = OpenStudy::open(&request.study, request.evaluator, monitor)?;
+    study.from_texts().iter().for_each(|remark| monitor.remark(remark));
+    study.run(request.chunks, &request.again, monitor)
 }
 
 /// How many chunks a study has, whether they are there or not.
@@ -148,10 +145,10 @@ fn is_of_study(study: &Path, file: &Path) -> bool {
 }
 
 /// All rows of a study in the order of its cases, with what is missing: as CSV, or in a file, whole or not at all, if one is named; then the
-/// text is empty. A file whose name ends with `.parquet` is a table of Parquet, any other one CSV.
+/// text is empty. A file whose name ends with `.parquet` is a table of Parquet, one with `.csv` or no ending CSV.
 ///
 /// # Errors
-/// If there is no study, or the file cannot be written.
+/// If there is no study, the name of the file has another ending, or it cannot be written.
 pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepResult), Failure> {
     let plan = Plan::read(study)?;
     if let Some(file) = out.filter(|file| is_of_study(study, file)) {
@@ -159,10 +156,17 @@ pub fn gather_sweep(study: &Path, out: Option<&Path>) -> Result<(String, SweepRe
             format!("`{}` belongs to the study and would be written over: name another file", shown_path(file));
         return Err(Failure::Input(message));
     }
+    let ending = out.and_then(Path::extension).map(|ending| ending.to_ascii_lowercase());
+    let is_parquet = ending.as_ref().is_some_and(|ending| ending == "parquet");
+    if let Some((file, other)) = out.zip(ending).filter(|(_, ending)| !is_parquet && ending != "csv") {
+        let (file, other) = (shown_path(file), other.display());
+        let message = format!("option `out {file}`: rows are not written as .{other}, only as .csv or .parquet");
+        return Err(Failure::Request(message));
+    }
     let (mut text, mut tally) = (String::new(), Tally::default());
     match out {
-        Some(file) if file.extension().is_some_and(|ending| ending == "parquet") => write_atomically(file, |out| {
-            let mut table = ParquetRows::new(&plan.columns(), &format!("flank {VERSION}"), out)?;
+        Some(file) if is_parquet => write_atomically(file, |out| {
+            let mut table = ParquetRows::new(&plan.columns(), &format!("flank {}", plan.version), out)?;
             plan.each_chunk(study, &mut tally, &mut |rows| {
                 table.add(&rows.lines().skip(1).map(|row| row.split(',').collect()).collect::<Vec<_>>())
             })?;
@@ -203,4 +207,63 @@ fn told(study: &Path, plan: &Plan) -> SweepResult {
     let mut tally = Tally::default();
     plan.each_chunk(study, &mut tally, &mut |_| Ok(())).expect("nothing is written");
     SweepResult::of(study, plan, tally)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::request::{CaseSource, StudyChunks, VariedRange};
+    use super::*;
+    use crate::project::Project;
+    use crate::project::monitor::Unwatched;
+    use crate::project::session::EvaluatorOptions;
+
+    fn made(out: &Path) {
+        let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/bevel/pinion_19x62.chain");
+        let ends = ["97.9 mm", "98.1 mm"].map(str::to_string);
+        let evaluator = EvaluatorOptions::default();
+        let request = SweepRequest {
+            jobs: JobSelection {
+                project: Project::open(spec, std::sync::Arc::new(flank_chain_dsl::Disk)),
+                job: None,
+                set: Vec::new(),
+            },
+            cases: CaseSource::Ranges(vec![VariedRange { name: "m.radial_distance".to_string(), ends, count: 2 }]),
+            collect: vec!["at:concave[0,0]".to_string()],
+            keep_points: false,
+            out: out.to_path_buf(),
+            limit: None,
+            evaluator,
+        };
+        plan_sweep(&request, &Unwatched).expect("a plan");
+        let run = RunRequest { study: out.to_path_buf(), chunks: StudyChunks::All, again: Vec::new(), evaluator };
+        assert_eq!(run_sweep(&run, &Unwatched).expect("rows").done, 1);
+    }
+
+    /// A study as another version would have made it: its own hashes in its rows and names.
+    #[test]
+    fn a_study_of_another_version_is_read() {
+        let folder = tempfile::tempdir().expect("a folder");
+        made(folder.path());
+        let own = Plan::read(folder.path()).expect("a plan");
+        let other = Plan { version: "0.0.1".to_string(), ..own.clone() };
+        let cases = [&own, &other].map(|plan| plan.hashes_of_cases(0));
+        let files = [&own, &other].map(|plan| plan.stored(folder.path(), 0).file);
+        let rows = std::fs::read_to_string(&files[0]).expect("rows");
+        let rows = cases[0].iter().zip(&cases[1]).fold(rows, |rows, (own, other)| rows.replace(own, other));
+        std::fs::write(&files[1], &rows).expect("a file");
+        std::fs::remove_file(&files[0]).expect("it is there");
+        other.write(folder.path()).expect("a plan");
+        let (text, result) = gather_sweep(folder.path(), None).expect("it is read");
+        assert_eq!((text, result.done, result.not_done.len()), (rows, 1, 0));
+        let told = sweep_status(folder.path()).expect("it is read").to_string();
+        assert!(told.contains("made by flank 0.0.1"), "{told}");
+        let run = RunRequest {
+            study: folder.path().to_path_buf(),
+            chunks: StudyChunks::All,
+            again: Vec::new(),
+            evaluator: EvaluatorOptions::default(),
+        };
+        let refused = run_sweep(&run, &Unwatched).expect_err("nothing is added").to_string();
+        assert!(refused.contains("rows of two programs do not go into one study"), "{refused}");
+    }
 }

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use flank_chain_dsl::{Compilation, Disk};
 use flank_export::{Header, write_atomically};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
@@ -20,6 +21,12 @@ use crate::project::spec::Origin;
 
 /// The file of a plan.
 pub(super) const PLAN: &str = "plan.json";
+/// The folder of its chunks.
+pub(super) const CHUNKS: &str = "chunks";
+/// The folder of the journals of chunks that are worked on.
+pub(super) const OPEN: &str = "open";
+/// The folder in which points of cases are kept.
+pub(super) const POINTS: &str = "points";
 /// The name of the document.
 const SCHEMA: &str = "flank.sweep_plan/1";
 pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -28,21 +35,25 @@ const HASH_LENGTH: usize = 16;
 /// Marks the folder of the texts as that of a project.
 const MARK: &str = "flank.toml";
 
-/// All that a study is, but its results.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct Plan {
-    pub(super) schema: String,
+/// All that a study is, but its results: the file `plan.json` of `flank sweep plan`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(tag = "schema", rename = "flank.sweep_plan/1")]
+pub(crate) struct Plan {
     /// Of the program that made it.
     pub(super) version: String,
-    /// The spec in the folder `spec`, and its job.
+    /// The spec in the folder `spec`.
     pub(super) spec: String,
+    /// Its job.
     pub(super) job: String,
     /// Values that all cases have in common.
     pub(super) set: Vec<(String, String)>,
     /// SHA-256 of all texts.
     pub(super) hash: String,
+    /// What differs from case to case.
     pub(super) inputs: Vec<StudyInput>,
+    /// The values of these.
     pub(super) cases: CaseValues,
+    /// What becomes of each case.
     pub(super) collect: Vec<String>,
     /// The heads of the columns that are collected.
     pub(super) heads: Vec<String>,
@@ -57,7 +68,6 @@ pub(super) struct Plan {
 impl Plan {
     pub(super) fn new(which: &JobSelection, spec: String, hash: String) -> Plan {
         Plan {
-            schema: SCHEMA.to_string(),
             version: VERSION.to_string(),
             spec,
             job: which.job.clone().unwrap_or_default(),
@@ -145,8 +155,40 @@ impl Plan {
         write_text(&folder.join(PLAN), &text)
     }
 
+    /// Makes the folders for its results where they are missing: who copies a study may lose those that are empty.
+    ///
+    /// # Errors
+    /// If one cannot be made.
+    pub(super) fn make_folders(&self, folder: &Path) -> Result<(), Failure> {
+        let all = [CHUNKS, OPEN].into_iter().chain(self.keep_points.then_some(POINTS));
+        all.into_iter().try_for_each(|name| Ok(flank_export::make_folder(&folder.join(name))?))
+    }
+
+    /// One that this program may add rows to.
+    ///
     /// # Errors
     /// If there is no study, or another program has made it.
+    pub(super) fn read_own(folder: &Path) -> Result<Plan, Failure> {
+        let plan = Plan::read(folder)?;
+        if plan.is_own() {
+            return Ok(plan);
+        }
+        Err(Failure::Input(format!(
+            "{} was made by flank {}, this is flank {VERSION}: rows of two programs do not go into one study; make a new one",
+            folder.display(),
+            plan.version
+        )))
+    }
+
+    /// Whether this program has made it.
+    pub(super) fn is_own(&self) -> bool {
+        self.version == VERSION
+    }
+
+    /// Of any version.
+    ///
+    /// # Errors
+    /// If there is no study that this program knows.
     pub(super) fn read(folder: &Path) -> Result<Plan, Failure> {
         let path = folder.join(PLAN);
         let text = std::fs::read_to_string(&path).map_err(|reason| {
@@ -156,10 +198,10 @@ impl Plan {
             Failure::Input(format!("{} is no plan of a study that this program knows: {reason}", path.display()))
         };
         let document: serde_json::Value = serde_json::from_str(&text).map_err(wrong)?;
-        let version = document["version"].as_str().unwrap_or_default();
-        if document["schema"] != SCHEMA || version != VERSION {
+        if document["schema"] != SCHEMA {
+            let version = document["version"].as_str().unwrap_or_default();
             return Err(Failure::Input(format!(
-                "{} was made by flank {version}, this is flank {VERSION}: rows of two programs do not go into one study; make a new one",
+                "{} was made by flank {version}, whose plans flank {VERSION} does not read",
                 folder.display()
             )));
         }

@@ -8,7 +8,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::chunks::Tally;
-use super::plan::Plan;
+use super::plan::{Plan, VERSION};
 use crate::project::answer::{Answer, Timing};
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::{shown_path, units};
@@ -22,6 +22,8 @@ const LISTED: usize = 5;
 pub struct SweepResult {
     /// The folder.
     pub study: String,
+    /// The version of flank that made it, and whose rows it holds.
+    pub version: String,
     /// The job.
     pub job: String,
     /// Heads of the columns that differ from case to case, with units.
@@ -54,13 +56,14 @@ impl SweepResult {
         let damaged: Vec<String> = tally.damaged.iter().map(|file| shown_path(file)).collect();
         SweepResult {
             study: shown_path(study),
+            version: plan.version.clone(),
             job: plan.job.clone(),
             inputs: plan.inputs.iter().map(|input| input.head()).collect(),
             collected: plan.heads.clone(),
             cases: plan.cases.count(),
             chunks: plan.chunks(),
             done: tally.done,
-            not_done: told(&damaged, study, plan).into_iter().collect(),
+            not_done: told(&damaged, study, plan).into_iter().chain(none_done(&tally, plan)).collect(),
             damaged,
             verdicts: tally.verdicts,
             failed: tally.failed,
@@ -68,6 +71,18 @@ impl SweepResult {
             timing: None,
         }
     }
+}
+
+/// What is said where there are rows and none is of a case that is done.
+fn none_done(tally: &Tally, plan: &Plan) -> Option<NotDone> {
+    let rows: u64 = tally.verdicts.values().sum();
+    let each = tally.verdicts.iter().map(|(verdict, count)| {
+        let why = tally.whys.get(verdict).filter(|why| !why.is_empty());
+        format!("{count} {verdict}{}", why.map_or(String::new(), |why| format!(", the first by {why}")))
+    });
+    let message = format!("none of {} is done", units::counted(rows as usize, "case"));
+    let is_none = rows > 0 && !tally.verdicts.contains_key("done");
+    is_none.then(|| NotDone::new(NotDoneKind::NotSolved, &plan.job, message).with(each.collect()))
 }
 
 /// What is said of damaged chunks.
@@ -105,6 +120,9 @@ impl fmt::Display for SweepResult {
             units::counted(self.chunks, "chunk"),
             self.done
         )?;
+        if self.version != VERSION {
+            writeln!(f, "  made by flank {}, this is flank {VERSION}: its rows stay, none is added\n", self.version)?;
+        }
         for (verdict, count) in &self.verdicts {
             writeln!(f, "  {count:>8}  {verdict}")?;
         }

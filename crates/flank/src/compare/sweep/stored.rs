@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use flank_export::CellKind;
 
-use super::plan::Plan;
+use super::plan::{CHUNKS, Plan};
 use super::row::VERDICTS;
 
 /// A chunk of a study.
@@ -31,7 +31,7 @@ impl Plan {
     pub(super) fn stored(&self, folder: &Path, chunk: usize) -> StoredChunk {
         let cases = self.hashes_of_cases(chunk);
         let hash = self.hash_of_chunk(chunk, &cases);
-        let file = folder.join("chunks").join(format!("{hash}.csv"));
+        let file = folder.join(CHUNKS).join(format!("{hash}.csv"));
         let rows = match std::fs::read_to_string(&file) {
             Ok(text) if self.is_whole(&text, chunk, &cases) => StoredRows::Whole(text),
             Err(reason) if reason.kind() == ErrorKind::NotFound => StoredRows::Missing,
@@ -62,6 +62,11 @@ impl Plan {
     /// The verdict in a row.
     pub(super) fn verdict_of<'r>(&self, row: &'r str) -> &'r str {
         row.split(',').nth(2 + self.inputs.len()).unwrap_or_default()
+    }
+
+    /// What a row says of its verdict.
+    pub(super) fn why_of<'r>(&self, row: &'r str) -> &'r str {
+        row.split(',').nth(3 + self.inputs.len()).unwrap_or_default()
     }
 }
 

@@ -15,6 +15,7 @@ use super::row::Cases;
 use crate::project::answer::{Timed, Timing};
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::remark::Remark;
 use crate::project::requests::JobSelection;
 use crate::project::session::{EvaluatorOptions, Session};
 use crate::project::spec::Origin;
@@ -46,13 +47,19 @@ impl OpenStudy {
     pub fn open(folder: &Path, evaluator: EvaluatorOptions, monitor: &dyn Monitor) -> Result<OpenStudy, Failure> {
         let of_plan = folder.join("plan.json");
         let before = stamp(&of_plan);
-        let plan = Plan::read(folder)?;
+        let plan = Plan::read_own(folder)?;
+        plan.make_folders(folder)?;
         let which = plan.selection(folder);
         let texts = checked_texts(&plan, &which, folder)?;
         let what = (&plan.collect[..], plan.keep_points.then(|| plan.header()));
         let cases = Cases::new(which, plan.inputs.clone(), what, Session::new(evaluator, monitor))?;
         let stamps = [(of_plan, before)].into_iter().chain(texts).collect();
         Ok(OpenStudy { folder: folder.to_path_buf(), plan, cases, evaluator, stamps })
+    }
+
+    /// Why each case is computed from its text, if so.
+    pub(super) fn from_texts(&self) -> Option<Remark> {
+        self.cases.from_texts(&self.plan.job)
     }
 
     /// Whether its plan and its texts are still those that it was opened with, as far as sizes and times of the files tell.

@@ -1,6 +1,6 @@
 //! Cases that differ by settings and mounting errors alone, compiled once: settings stay open in all tapes, and each case gives them numbers.
 
-use flank_chain_dsl::{Job, OpenSide, Parameter};
+use flank_chain_dsl::{GeneratedSurface, Job, OpenSide, Parameter};
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Deviation, Outcome, SurfaceGeometry, SurfacePoint};
 
@@ -71,7 +71,7 @@ struct CaseNumbers<'c> {
 }
 
 impl Compiled {
-    /// For a job; `None` where cases differ by more than numbers in its equations: the inputs decide ranges or samples or are counts, or
+    /// For a job; or why cases differ by more than numbers in its equations: the inputs decide ranges or samples or are counts, or
     /// something is collected that needs more.
     pub(super) fn new<'g>(
         (which, job): (&JobSelection, &Job<'g>),
@@ -79,14 +79,12 @@ impl Compiled {
         (collect, nominal): (&[Collected], &[Option<NominalPoints>]),
         keeps: bool,
         session: Session<'_>,
-    ) -> Result<Option<Compiled>, Failure> {
+    ) -> Result<Result<Compiled, String>, Failure> {
         let settings: Vec<usize> = (0..inputs.len()).filter(|k| !inputs[*k].is_axis).collect();
         let parameter = |k: &usize| job.parameters.iter().find(|of| of.name == inputs[*k].name);
-        let Some(open) = settings.iter().map(parameter).collect::<Option<Vec<&Parameter<'g>>>>() else {
-            return Ok(None);
-        };
-        if open.iter().any(|of| of.is_count || job.decisive.contains(&of.variable)) {
-            return Ok(None);
+        let open: Vec<&Parameter<'g>> = settings.iter().filter_map(parameter).collect();
+        if let Some(of) = open.iter().find(|of| of.is_count || job.decisive.contains(&of.variable)) {
+            return Ok(Err(decides(of)));
         }
         let variables: Vec<Expr<'g>> = open.iter().map(|of| of.variable).collect();
         let bindings = job.bindings_beside(&variables);
@@ -98,12 +96,12 @@ impl Compiled {
         let mut opened = Opened::new((which, job), (inputs, &open), &bindings, session);
         let mut collected = Vec::new();
         for (of, nominal) in collect.iter().zip(nominal) {
-            let Some(compiled) = opened.collected(of, nominal.as_ref())? else { return Ok(None) };
+            let Some(compiled) = opened.collected(of, nominal.as_ref())? else { return Ok(Err(needs_texts(job, of))) };
             collected.push(compiled);
         }
         let kept = if keeps { opened.all_samples() } else { Some(Vec::new()) };
-        let Some(kept) = kept else { return Ok(None) };
-        Ok(Some(Compiled {
+        let Some(kept) = kept else { return Ok(Err(needs_texts(job, &Collected::Points))) };
+        Ok(Ok(Compiled {
             sizes: inputs.iter().map(|input| size_of_unit(&input.unit).map_or(1.0, |(size, _)| size)).collect(),
             settings,
             following: following.expect("a job without errors leaves nothing unbound"),
@@ -163,6 +161,37 @@ impl Compiled {
         let CaseNumbers { points, .. } = case;
         self.samples.iter().zip(points).for_each(|(of, points)| points.into_iter().for_each(|own| of.take_back(own)));
         Ok(Some(found.with_points(self.kept.is_some().then_some(kept))))
+    }
+}
+
+/// Why a setting cannot stay open.
+fn decides(of: &Parameter<'_>) -> String {
+    match of.is_count {
+        true => format!("`{}` is a count", of.name),
+        false => format!(
+            "`{}` decides more than numbers in equations, as a range, a sample or a joint of a profile",
+            of.name
+        ),
+    }
+}
+
+/// Why something cannot be collected where settings are open.
+fn needs_texts(job: &Job<'_>, of: &Collected) -> String {
+    match of {
+        Collected::Contact(name) => {
+            format!(
+                "the inputs change how the pair of contact `{name}` turns, or its flanks do not touch in the job itself"
+            )
+        }
+        Collected::Width([_, name]) => format!("where the sample of `{name}` asks for points depends on the case"),
+        Collected::At(name, _) | Collected::Curvature(name) | Collected::EaseOff(name) => {
+            format!("`{name}` is trimmed or cut by others")
+        }
+        Collected::Points | Collected::Requirements | Collected::Limits => {
+            let is_cut = |of: &&GeneratedSurface<'_>| !of.trimmed_by.is_empty() || of.cut_by.is_some();
+            let cut = job.surfaces.iter().filter(|of| of.sample.is_some()).find(is_cut);
+            format!("`{}` is trimmed or cut by others", cut.map_or("", |of| &of.name))
+        }
     }
 }
 

@@ -23,7 +23,7 @@ use crate::compare::deviation;
 use crate::compare::map::find;
 use crate::project::failure::Failure;
 use crate::project::findings::Severity;
-use crate::project::remark::NotDone;
+use crate::project::remark::{NotDone, Remark, RemarkKind};
 use crate::project::requests::JobSelection;
 use crate::project::session::Session;
 use crate::solve::starts::Asked;
@@ -68,8 +68,8 @@ pub(super) struct Cases {
     widths: Vec<usize>,
     /// Of those that are compared with the job itself.
     nominal: Vec<Option<NominalPoints>>,
-    /// Where cases differ by numbers in the equations alone.
-    compiled: Option<Compiled>,
+    /// Where cases differ by numbers in the equations alone; or why they do not.
+    compiled: Result<Compiled, String>,
     kept: Option<KeptPoints>,
 }
 
@@ -105,6 +105,15 @@ impl Cases {
         let compiled = Compiled::new((&which, job), &inputs, (&collect, &nominal), keep.is_some(), session)?;
         let kept = keep.map(|header| KeptPoints::new(job, header));
         Ok(Cases { which, inputs, collect, widths, nominal, compiled, kept })
+    }
+
+    /// Why each case is computed from its text, if so.
+    pub(super) fn from_texts(&self, job: &str) -> Option<Remark> {
+        let why = self.compiled.as_ref().err()?;
+        let message = format!(
+            "each case of `{job}` is compiled from its text, which may take ten times as long as where the job is compiled once: {why}"
+        );
+        Some(Remark::new(RemarkKind::FromTexts, job, message))
     }
 
     /// A case with these values of the inputs; whatever happens becomes a verdict.
@@ -144,7 +153,7 @@ impl Cases {
 
     fn found(&self, case: (u64, &[f64]), session: Session<'_>) -> Result<Found, Failure> {
         session.check()?;
-        if let Some(compiled) = &self.compiled {
+        if let Ok(compiled) = &self.compiled {
             let nothing = |verdict, why: &str| self.nothing(verdict, why);
             if let Some(found) = compiled.found(case, &self.nominal, nothing, session)? {
                 return Ok(found);

@@ -50,7 +50,7 @@ pub(super) fn found<'i>(
         return Err(Failure::Findings(Findings::new(&compilation.diagnostics, &compilation.sources)));
     }
     let jobs = compilation.take_jobs(which.job.as_deref());
-    let jobs = jobs.map_err(|finding| Failure::Findings(Findings::new(&[finding], &compilation.sources)))?;
+    let jobs = jobs.map_err(|findings| Failure::Findings(Findings::new(&findings, &compilation.sources)))?;
     let origin = Origin::of_compilation(&compilation);
     // several of what is collected ask for the same samples
     let known = KnownSamples::default();
