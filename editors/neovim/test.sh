@@ -13,7 +13,8 @@ printf '' >"$folder/flank.toml"
 printf 'machine lathe {\naxis C: rotary\n    axis Z : linear\n    frame bed\n    frame slide in bed = translate_z(Z)\n    frame work in bad = rotate_z(C)\n}\n' \
     >"$folder/lathe.chain"
 cp "$folder/lathe.chain" "$folder/before"
-export FLANK SPEC="$folder/lathe.chain"
+cp "$here/../vscode/test/thread.chain" "$folder/thread.chain"
+export FLANK SPEC="$folder/lathe.chain" JOB="$folder/thread.chain"
 timeout 30 nvim --headless -u "$here/flank.lua" -i NONE -c "luafile $here/test/check.lua"
 # nothing is written that nobody saved
 cmp "$folder/lathe.chain" "$folder/before"

@@ -16,6 +16,7 @@ if [ ! -d /usr/include/node ] || ! "$here/install-code-server.sh" "$server" >/de
     exit 0
 fi
 cd "$here"
+node test/patterns.mjs
 [ -d node_modules/playwright-core ] || npm ci --no-audit --no-fund --silent
 npm run --silent package >/dev/null
 folder=${1:-$(mktemp -d)}

@@ -4,6 +4,8 @@ mod support;
 
 #[path = "lsp/client.rs"]
 mod client;
+#[path = "lsp/completion.rs"]
+mod completion;
 #[path = "lsp/focus.rs"]
 mod focus;
 #[path = "lsp/sessions.rs"]

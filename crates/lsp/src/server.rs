@@ -279,6 +279,9 @@ impl<W: Write> Server<W> {
             Err(error) => return self.refuse(request.id, ErrorCode::InvalidParams, error.to_string()),
         };
         let workspace = params.capabilities.workspace.as_ref();
+        let items = params.capabilities.text_document.as_ref().and_then(|text| text.completion.as_ref());
+        let items = items.and_then(|completion| completion.completion_item.as_ref());
+        self.options.snippets = items.and_then(|item| item.snippet_support) == Some(true);
         let lens = workspace.and_then(|workspace| workspace.code_lens.as_ref());
         self.refreshes_lenses = lens.and_then(|lens| lens.refresh_support).unwrap_or(false);
         let window = params.capabilities.window.as_ref().and_then(|window| window.show_document.as_ref());

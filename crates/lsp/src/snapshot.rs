@@ -69,6 +69,8 @@ pub(super) struct Snapshot {
 pub(super) struct Options {
     /// Values beside plain numbers, too.
     pub(super) literal_values: bool,
+    /// Whether the editor leads through places to fill.
+    pub(super) snippets: bool,
 }
 
 /// A text with what is known of it.

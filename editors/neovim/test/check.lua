@@ -37,5 +37,26 @@ local answers = vim.lsp.buf_request_sync(0, 'textDocument/definition', vim.lsp.u
 local _, answer = next(answers or {})
 expect(answer and answer.result and answer.result.range.start, { line = 1, character = 9 }, 'the definition')
 
-print('Neovim ' .. tostring(vim.version().minor) .. ': diagnosed, mended, laid out, defined\n')
+-- the page that follows
+vim.cmd('edit! ' .. vim.env.JOB)
+wait('server of the job', function() return vim.lsp.buf_get_clients(0) and next(vim.lsp.buf_get_clients(0)) ~= nil end)
+local opened
+vim.ui.open = function(address) opened = address end
+vim.cmd('FlankPreview')
+wait('page', function() return opened ~= nil end)
+expect(opened:match('^http://127%.0%.0%.1:%d+/') ~= nil, true, 'the address ' .. opened)
+
+-- it hears which spec is in focus
+local _, client = next(vim.lsp.buf_get_clients(0))
+local told, notify = {}, client.notify
+client.notify = function(method, params)
+  if method == 'flank/didFocus' then
+    table.insert(told, params.textDocument.uri)
+  end
+  return notify(method, params)
+end
+vim.cmd('edit! ' .. vim.env.SPEC)
+expect(told, { vim.uri_from_fname(vim.env.SPEC) }, 'the spec in focus')
+
+print('Neovim ' .. tostring(vim.version().minor) .. ': diagnosed, mended, laid out, defined, shown\n')
 vim.cmd('qall!')

@@ -10,7 +10,7 @@
  "drive" "trim" "sample" "in" "by" "require" "profile" "cut" "nc" "error" "insert" "close" "unknown" "solid" "contact" "want" "mill"
  "expect" "step" "as" "keep" "along" "about" "towards" "where" "for" "with" "of" "near" "within" "passes" "side" "both" "ways" "clear"
  "scallop" "chord" "lead" "tilt" "stock" "inside" "outside"] @keyword
-["if" "then" "else"] @conditional
+["if" "then" "else"] @keyword.conditional
 ["and" "or" "not"] @keyword.operator
 ["+" "-" "*" "/" "^" "<" "<=" ">" ">=" "==" "!=" "=" ".." "->"] @operator
 ["{" "}" "(" ")" "[" "]"] @punctuation.bracket
@@ -31,7 +31,7 @@
 (let name: (identifier) @variable)
 (axis name: (identifier) @variable)
 (unknown_axis name: (identifier) @variable)
-(frame name: (identifier) @namespace)
+(frame name: (identifier) @module)
 (formal name: (identifier) @variable.parameter)
 (parameter name: (identifier) @variable)
 (argument name: (identifier) @property)

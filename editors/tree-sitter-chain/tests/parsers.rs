@@ -123,10 +123,58 @@ fn mutated_specs_that_the_program_takes_have_a_tree_without_a_mistake() {
     assert!(wrong.is_empty(), "{} of {accepted}:\n{}", wrong.len(), wrong[..wrong.len().min(20)].join("\n"));
 }
 
+/// What Neovim calls what it colours, as the queries of the grammar do; and what Helix does.
+const CAPTURES: [[&str; 2]; 17] = [
+    ["comment", "comment"],
+    ["string", "string"],
+    ["number", "constant.numeric"],
+    ["constant", "constant"],
+    ["keyword", "keyword"],
+    ["keyword.conditional", "keyword.control.conditional"],
+    ["keyword.operator", "keyword.operator"],
+    ["operator", "operator"],
+    ["punctuation.bracket", "punctuation.bracket"],
+    ["punctuation.delimiter", "punctuation.delimiter"],
+    ["type", "type"],
+    ["type.builtin", "type.builtin"],
+    ["function", "function"],
+    ["variable", "variable"],
+    ["variable.parameter", "variable.parameter"],
+    ["property", "variable.other.member"],
+    ["module", "namespace"],
+];
+
+/// A query with the names of Helix in it.
+fn for_helix(query: &str) -> String {
+    let mut parts = query.split('@');
+    let mut out = parts.next().unwrap_or_default().to_string();
+    for part in parts {
+        let end = part.find(|letter: char| !letter.is_ascii_lowercase() && letter != '.').unwrap_or(part.len());
+        let found = CAPTURES.iter().find(|[name, _]| *name == &part[..end]);
+        let [_, helix] = found.unwrap_or_else(|| panic!("no editor knows @{}", &part[..end]));
+        out += &format!("@{helix}{}", &part[end..]);
+    }
+    out
+}
+
+/// `UPDATE_PAGES=1` makes the queries of the editors.
 #[test]
-fn the_queries_fit_the_grammar() {
-    let language = tree_sitter_chain::LANGUAGE.into();
-    for query in [tree_sitter_chain::HIGHLIGHTS, tree_sitter_chain::FOLDS] {
-        Query::new(&language, query).expect("a query");
+fn the_queries_of_editors_are_those_of_the_grammar() {
+    let editors = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let (highlights, folds) = (tree_sitter_chain::HIGHLIGHTS, tree_sitter_chain::FOLDS);
+    let indents = folds.replace("@fold", "@indent") + "[\"}\" \")\" \"]\"] @outdent\n";
+    let wanted = [
+        ("neovim/queries/chain/highlights.scm", highlights.to_string()),
+        ("neovim/queries/chain/folds.scm", folds.to_string()),
+        ("helix/queries/chain/highlights.scm", for_helix(highlights)),
+        ("helix/queries/chain/indents.scm", indents),
+    ];
+    for (path, query) in wanted {
+        Query::new(&tree_sitter_chain::LANGUAGE.into(), &query).expect("a query");
+        let path = editors.join(path);
+        if std::env::var_os("UPDATE_PAGES").is_some() {
+            std::fs::write(&path, &query).expect("the query");
+        }
+        assert_eq!(std::fs::read_to_string(&path).expect("the query"), query, "{}", path.display());
     }
 }

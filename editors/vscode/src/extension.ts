@@ -11,6 +11,8 @@ const SCHEMES = ["flank-library", "flank-error"];
 
 let client: LanguageClient | undefined;
 let panel: vscode.WebviewPanel | undefined;
+/** The address that the panel frames. */
+let framed: string | undefined;
 
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
     for (const scheme of SCHEMES) {
@@ -53,7 +55,7 @@ async function start(): Promise<void> {
     const server: ServerOptions = { command, args: ["lsp"] };
     client = new LanguageClient("flank", "flank", server, {
         documentSelector: [{ language: "chain" }],
-        initializationOptions: { inlayHints: settings.get("inlayHints"), preview: settings.get("preview") },
+        initializationOptions: { inlayHints: settings.get("inlayHints"), preview: { ...settings.get<object>("preview"), opens: true } },
         synchronize: {
             configurationSection: "flank",
             fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{chain,csv}"),
@@ -90,14 +92,21 @@ async function preview(uri: string | undefined, job?: string): Promise<void> {
     if (!uri || !client) return;
     const given = job === undefined ? [uri] : [uri, job];
     const answer = await client.sendRequest<{ url: string }>("workspace/executeCommand", { command: "flank.preview", arguments: given });
-    if (panel) return panel.reveal(undefined, true);
     // a port of another machine may be forwarded to some other address; the path behind it stays
     const { origin: there, pathname } = new URL(answer.url);
     const here = (await vscode.env.asExternalUri(vscode.Uri.parse(there))).toString(true);
-    const url = here.replace(/\/$/, "") + pathname;
+    frame(here.replace(/\/$/, "") + pathname);
+}
+
+/** Shows an address beside the text; a server that was started again has another one. */
+function frame(url: string): void {
+    if (panel && framed === url) return panel.reveal(undefined, true);
     const place = { viewColumn: vscode.ViewColumn.Beside, preserveFocus: true };
-    panel = vscode.window.createWebviewPanel("flank.preview", "flank", place, { enableScripts: true, retainContextWhenHidden: true });
-    panel.onDidDispose(() => (panel = undefined));
+    if (!panel) {
+        panel = vscode.window.createWebviewPanel("flank.preview", "flank", place, { enableScripts: true, retainContextWhenHidden: true });
+        panel.onDidDispose(() => (panel = framed = undefined));
+    }
+    framed = url;
     const origin = new URL(url).origin;
     panel.webview.html = `<!DOCTYPE html><html><head><meta http-equiv="Content-Security-Policy" content="default-src 'none'; frame-src ${origin}; style-src 'unsafe-inline'">
 <style>html, body, iframe { margin: 0; padding: 0; border: 0; width: 100%; height: 100vh; background: #fff }</style></head>

@@ -13,13 +13,30 @@ const fail = (text) => {
     throw new Error(text);
 };
 
+/** The process of the server that was started last. */
+const serverProcess = () => Number(readFileSync(`${folder}/server.pid`, "utf8"));
+
+/** The first page that shows its machine, of those whose address is wanted. */
+async function pageBeside(isWanted) {
+    for (const end = Date.now() + 20_000; Date.now() < end; await page.waitForTimeout(100)) {
+        for (const frame of page.frames().filter((frame) => frame.url().endsWith("/page") && isWanted(frame.url()))) {
+            if (await frame.evaluate(() => document.body?.dataset.ready === "true").catch(() => false)) return frame;
+        }
+    }
+    await page.screenshot({ path: `${folder}/page.png` });
+    return fail(`no page beside the text: ${page.frames().map((frame) => frame.url().slice(0, 120)).join(" ")}`);
+}
+
 const spec = readFileSync(`${folder}/work/lathe.chain`, "utf8");
+// the program, which notes what process its server is
+const noting = `${folder}/flank`;
+writeFileSync(noting, `#!/bin/sh\n[ "$1" = lsp ] && echo $$ >'${folder}/server.pid'\nexec '${program}' "$@"\n`, { mode: 0o755 });
 for (const place of ["User", "Machine"]) mkdirSync(`${folder}/data/${place}`, { recursive: true });
 // a setting of the machine that the server runs on: among those of the user it is heeded only until the workbench knows the server
-writeFileSync(`${folder}/data/Machine/settings.json`, JSON.stringify({ "flank.path": program }));
+writeFileSync(`${folder}/data/Machine/settings.json`, JSON.stringify({ "flank.path": noting }));
 writeFileSync(`${folder}/data/User/settings.json`, JSON.stringify({
     "workbench.startupEditor": "none", "security.workspace.trust.enabled": false, "telemetry.telemetryLevel": "off",
-    "editor.minimap.enabled": false, "chat.commandCenter.enabled": false,
+    "editor.minimap.enabled": false, "files.autoSave": "off", "chat.commandCenter.enabled": false,
 }));
 const node = spawn(process.execPath, [
     `${server}/out/node/entry.js`, "--auth", "none", "--bind-addr", `127.0.0.1:${port}`, "--disable-telemetry", "--disable-update-check",
@@ -57,6 +74,16 @@ try {
     say("the text is coloured");
     await page.waitForSelector(".squiggly-error");
     say("the mistake is underlined");
+    await page.keyboard.press("Control+Home");
+    await page.keyboard.press("End");
+    await page.keyboard.press("Enter");
+    // proposals open by themselves while a word is typed
+    await page.keyboard.type("fra", { delay: 60 });
+    const proposed = page.locator(".suggest-widget.visible .monaco-list-row", { hasText: "frame" });
+    await proposed.first().waitFor();
+    say("a word that is typed has proposals");
+    await page.keyboard.press("Escape");
+    for (let undone = 0; undone < 4; undone++) await page.keyboard.press("Control+Z");
     await page.keyboard.press("Control+Shift+M");
     const row = page.locator(".markers-panel .monaco-list-row", { hasText: "there is no frame" });
     await row.first().waitFor();
@@ -72,16 +99,20 @@ try {
     await lens.first().waitFor();
     say("the lenses are there");
     await lens.first().click();
-    let shown;
-    for (const end = Date.now() + 20_000; Date.now() < end && !shown; await page.waitForTimeout(100)) {
-        for (const frame of page.frames().filter((frame) => frame.url().endsWith("/page"))) {
-            if (await frame.evaluate(() => document.body?.dataset.ready === "true").catch(() => false)) shown = frame;
-        }
-    }
-    if (!shown) await page.screenshot({ path: `${folder}/page.png` });
-    if (!shown) fail(`no page beside the text: ${page.frames().map((frame) => frame.url().slice(0, 120)).join(" ")}`);
+    const shown = await pageBeside(() => true);
     say(`the page shows ${await shown.evaluate(() => document.getElementById("tally").textContent)}`);
     await page.screenshot({ path: `${folder}/page.png` });
+    // a server that ends by itself is started again, and serves the page at another address
+    const old = shown.url();
+    const ended = serverProcess();
+    process.kill(ended);
+    for (const end = Date.now() + 20_000; serverProcess() === ended; await page.waitForTimeout(100)) {
+        if (Date.now() > end) fail("the server is not started again");
+    }
+    await page.waitForTimeout(1000);
+    await lens.first().click();
+    await pageBeside((url) => url !== old);
+    say("the page of a server that was started again takes the place of the old one");
     if (readFileSync(`${folder}/work/lathe.chain`, "utf8") !== spec) fail("the spec was written");
 } catch (error) {
     // what the editor tells and shows at that moment

@@ -11,7 +11,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::{Parameter, RangedVariable, ValueSource};
-use crate::syntax::ast::{Argument, Dimension, Expression, Param};
+use crate::syntax::ast::{Argument, Dimension, Expression, ExpressionKind, Param};
 use crate::values::context::{Context, Role, quoted};
 use crate::values::dimension::shown;
 use crate::values::functions::plural;
@@ -343,7 +343,7 @@ impl<'a, 'g> Binder<'a, 'g> {
     }
 
     /// What was given too little or too much.
-    pub(crate) fn finish(&self, context: &mut Context<'g>, known: &[&Param]) {
+    pub(crate) fn finish(&self, context: &mut Context<'g>, params: &[&Param]) {
         let names: Vec<&str> = self.missing.iter().map(|name| name.node.as_str()).collect();
         match &self.source {
             Source::Definition | Source::Standing { .. } => {}
@@ -355,7 +355,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                 }
             }
             Source::Instance { name, definition, settings, .. } => {
-                let known: HashSet<&str> = known.iter().map(|param| param.name.node.as_str()).collect();
+                let known: HashSet<&str> = params.iter().map(|param| param.name.node.as_str()).collect();
                 let unknown = settings.iter().filter_map(|setting| setting.name.as_ref());
                 let unknown = unknown.filter(|name| !known.contains(name.node.as_str())).count();
                 // a misspelt setting is one mistake, not also a missing one
@@ -363,12 +363,41 @@ impl<'a, 'g> Binder<'a, 'g> {
                     let message = format!("`{}` needs {}", name.node, quoted(&names));
                     let help =
                         format!("give the value{}: `{definition}({}: …)`", plural(names.len()), names.join(": …, "));
-                    context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
+                    let mut diagnostic = Diagnostic::new(Code::MissingValue, name.span, message).help(help);
+                    let examples = params.iter().filter(|param| names.contains(&param.name.node.as_str()));
+                    if let Some(settings) = examples.map(|param| example(param)).collect::<Option<Vec<String>>>() {
+                        let definition = (*definition).to_string();
+                        diagnostic =
+                            diagnostic.rewriting(Rewriting::Settings(name.span, definition, settings.join(", ")));
+                    }
+                    context.report(diagnostic);
                 }
                 check_settings(context, settings, &known);
             }
         }
     }
+}
+
+/// A setting with a value that the parameter may have: the lower end of its range, or one of its unit; none of a profile.
+fn example(param: &Param) -> Option<String> {
+    let ones: Vec<(&str, i32)> =
+        param.dimension.factors.iter().map(|(name, power)| (name.node.as_str(), *power)).collect();
+    let unit = match ones[..] {
+        [("length", 1)] => " mm",
+        [("angle", 1)] => " deg",
+        [("number" | "count", 1)] => "",
+        [("length", 1), ("angle", -1)] => " mm/rev",
+        _ => return None,
+    };
+    let low = param.range.as_ref().and_then(|range| match &range.low.kind {
+        ExpressionKind::Number(number, units) => match units.as_slice() {
+            [(unit, 1)] => Some(format!("{number} {}", unit.node)),
+            [] => Some(number.to_string()),
+            _ => None,
+        },
+        _ => None,
+    });
+    Some(format!("{}: {}", param.name.node, low.unwrap_or_else(|| format!("1{unit}"))))
 }
 
 /// A value cannot stay, which has been reported.

@@ -351,7 +351,7 @@ fn check_joint<'g>(context: &mut Context<'g>, one: &Segment<'g>, next: &Segment<
         let point = |x, y| format!("[{}, {}]", shown(x, Dimension::LENGTH), shown(y, Dimension::LENGTH));
         let message = format!("`{}` begins {} from the end of `{}`", next.name, rounded(gap), one.name);
         let help = format!("let it begin at {} instead of {}", point(x0, y0), point(x1, y1));
-        let beginning = Rewriting::Beginning(next.span, point(x0, y0));
+        let beginning = Rewriting::Vector("from:", next.span, point(x0, y0));
         let diagnostic = Diagnostic::new(Code::BrokenProfile, next.span, message).help(help).rewriting(beginning);
         context.report(diagnostic.note(one.span, "the segment before it"));
     }

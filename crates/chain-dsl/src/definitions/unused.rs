@@ -4,9 +4,10 @@ use std::collections::HashSet;
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::Name;
+use crate::diagnostics::rewriting::Rewriting;
+use crate::diagnostics::source::{Name, Span};
 use crate::syntax::ast::{
-    self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, Side, SurfaceParameter,
+    self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, Param, Side, SurfaceParameter,
     ToolStatement,
 };
 use crate::values::context::Context;
@@ -41,11 +42,11 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
         match item {
             Item::Machine(machine) => {
                 let params = machine.statements.iter().filter_map(|statement| match statement {
-                    MachineStatement::Param(param) => Some(&param.name),
+                    MachineStatement::Param(param) => Some(param),
                     _ => None,
                 });
-                let unused = params.filter(|name| !by_machines.has(name) && !by_jobs.has_member(name));
-                unused.for_each(|name| parameter(context, name));
+                let unused = params.filter(|param| !by_machines.has(&param.name) && !by_jobs.has_member(&param.name));
+                unused.for_each(|param| parameter(context, param));
                 frames(context, machine, &parents, &by_jobs, jobs().next().is_some());
             }
             Item::Tool(tool) => {
@@ -56,7 +57,7 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                         && !used.has(&param.name)
                         && !by_jobs.has_member(&param.name)
                     {
-                        parameter(context, &param.name);
+                        parameter(context, param);
                     }
                 }
             }
@@ -66,11 +67,9 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
                 used.inherited(job, all);
                 for statement in &job.statements {
                     match statement {
-                        JobStatement::Param(param) if !used.has(&param.name) => parameter(context, &param.name),
+                        JobStatement::Param(param) if !used.has(&param.name) => parameter(context, param),
                         JobStatement::Motion(motion) if !used.has(&motion.name) => {
-                            let message = format!("`{}` moves nothing", motion.name.node);
-                            let help = format!("drive an axis with it: `drive m.X = {}`", motion.name.node);
-                            context.report(Diagnostic::new(Code::UnusedMotion, motion.name.span, message).help(help));
+                            moves_nothing(context, job, motion);
                         }
                         JobStatement::Unknown(unknown) if !used.has(&unknown.name) => {
                             let message = format!("`{}` is determined by no contact", unknown.name.node);
@@ -89,11 +88,43 @@ pub(crate) fn warn(context: &mut Context<'_>, file: &File, all: &[&Item]) {
     }
 }
 
-fn parameter(context: &mut Context<'_>, name: &Name) {
+fn parameter(context: &mut Context<'_>, param: &Param) {
+    let name = &param.name;
     if !name.node.is_empty() {
         let message = format!("nothing uses `{}`", name.node);
-        context.report(Diagnostic::new(Code::UnusedParameter, name.span, message).help("use it or leave it out"));
+        let parts = [param.range.as_ref().map(|range| range.span), param.step.as_ref().map(|step| step.span)];
+        let parts = parts.into_iter().chain([param.default.as_ref().map(|value| value.span)]).flatten();
+        let whole = Rewriting::Statement(name.span, parts.fold(name.span.to(param.dimension.span), Span::to));
+        let diagnostic = Diagnostic::new(Code::UnusedParameter, name.span, message);
+        context.report(diagnostic.help("use it or leave it out").rewriting(whole));
     }
+}
+
+/// Reports a motion without use: it may drive an axis that stands still, or go.
+fn moves_nothing(context: &mut Context<'_>, job: &ast::Job, motion: &ast::Parameter) {
+    let name = &motion.name;
+    let message = format!("`{}` moves nothing", name.node);
+    let help = format!("drive an axis with it: `drive m.X = {}`", name.node);
+    let mut diagnostic = Diagnostic::new(Code::UnusedMotion, name.span, message).help(help);
+    for (axis, law) in job.statements.iter().flat_map(|statement| standing(statement, &motion.dimension)) {
+        diagnostic = diagnostic.cure(format!("write `drive {axis} = {}`", name.node), law, name.node.clone());
+    }
+    context.report(diagnostic.rewriting(Rewriting::Statement(name.span, name.span.to(motion.range.span))));
+}
+
+/// The axes that a statement lets stand still, with the places of their laws: those of a dimension.
+fn standing(statement: &JobStatement, dimension: &ast::Dimension) -> Vec<(String, Span)> {
+    let JobStatement::Drive(drive) = statement else { return Vec::new() };
+    let [(wanted, 1)] = dimension.factors.as_slice() else { return Vec::new() };
+    let is_of_dimension = |value: &&ast::Expression| match &value.kind {
+        ast::ExpressionKind::Number(_, units) => match units.as_slice() {
+            [(unit, 1)] => crate::unit_size(&unit.node).is_some_and(|(_, of)| of.to_string() == wanted.node),
+            _ => false,
+        },
+        _ => false,
+    };
+    let laws = drive.targets.iter().zip(&drive.values).filter(|(_, value)| is_of_dimension(value));
+    laws.map(|(axis, value)| (axis.joined(), value.span)).collect()
 }
 
 fn written_frames(machine: &ast::Machine) -> impl Iterator<Item = &ast::Frame> {

@@ -20,8 +20,16 @@ pub(crate) enum Rewriting {
     Ordered(Span, Vec<Span>),
     /// The entries of a list, with brackets unless these stand around it.
     Entries(Span, String),
-    /// The vector behind `from:` in a place becomes another one.
-    Beginning(Span, String),
+    /// The vector behind an argument's name in a place becomes another one.
+    Vector(&'static str, Span, String),
+    /// A direction becomes another one, also where a word says it.
+    Direction(Span, String),
+    /// What is called so goes, with all of its statement and what is said of it above.
+    Statement(Span, Span),
+    /// The machine or the tool of this name and definition gets further settings.
+    Settings(Span, String, String),
+    /// The pose whose first frame stands in a place says where one more axis stands.
+    Pose(Span, String),
     /// The `close` whose frames stand in a place says more.
     Closing(Span, String),
 }
@@ -60,13 +68,41 @@ impl Rewriting {
                 let is_inside = whole(*span)[..span.start as usize].trim_end().ends_with('[');
                 Some(writing(*span, if is_inside { list.clone() } else { format!("[{list}]") }))
             }
-            Rewriting::Beginning(span, point) => {
+            Rewriting::Vector(argument, span, point) => {
                 let inside = text(*span);
-                let behind = inside.find("from:")? + "from:".len();
+                let behind = inside.find(argument)? + argument.len();
                 let start = behind + inside[behind..].len() - inside[behind..].trim_start().len();
                 let length = length_of_vector(&inside[start..])?;
                 let start = span.start + start as u32;
                 Some(writing(Span { start, end: start + length as u32, ..*span }, point.clone()))
+            }
+            Rewriting::Direction(span, vector) => {
+                let is_vector = text(*span).starts_with('[');
+                let is_word = ["inside", "outside"].contains(&text(*span));
+                let written = if is_vector { vector.clone() } else { format!("towards {vector}") };
+                (is_vector || is_word).then(|| Cure {
+                    title: format!("write `body towards {vector}`"),
+                    span: *span,
+                    replacement: written,
+                })
+            }
+            Rewriting::Statement(name, span) => {
+                let span = whole_statement(whole(*span), *span)?;
+                Some(Cure { title: format!("leave `{}` out", text(*name)), span, replacement: String::new() })
+            }
+            Rewriting::Settings(name, definition, settings) => {
+                let (at, written) = further_settings(&whole(*name)[name.end as usize..], definition, settings)?;
+                let at = name.end + at as u32;
+                let title = format!("add `{settings}`");
+                Some(Cure { title, span: Span { start: at, end: at, ..*name }, replacement: written })
+            }
+            Rewriting::Pose(frame, axis) => {
+                let behind = &whole(*frame)[frame.end as usize..];
+                let list = behind.find(" at (").filter(|at| !behind[..*at].contains("within"))? + " at (".len();
+                let at = frame.end + list as u32;
+                let comma = if behind[list..].trim_start().starts_with(')') { "" } else { ", " };
+                let span = Span { start: at, end: at, ..*frame };
+                Some(Cure { title: format!("add `{axis}`"), span, replacement: format!("{axis}{comma}") })
             }
             Rewriting::Closing(span, keep) => {
                 let end = end_of_close(whole(*span), span.end as usize) as u32;
@@ -96,6 +132,40 @@ fn with_comma(whole: &str, entry: Span) -> Option<Span> {
     }
     let before = before.trim_end().strip_suffix(',')?;
     Some(Span { start: before.len() as u32, ..entry })
+}
+
+/// The lines of a statement that has them for itself, with the lines above that say what it is.
+fn whole_statement(whole: &str, span: Span) -> Option<Span> {
+    let line = |at: usize| whole[..at].rfind(['\n', '\r']).map_or(0, |end| end + 1);
+    let mut start = line(span.start as usize);
+    if !whole[start..span.start as usize].trim().chars().all(char::is_alphabetic) {
+        return None;
+    }
+    while start > 0 {
+        let above = line(start - 1);
+        if !whole[above..start].trim_start().starts_with("///") {
+            break;
+        }
+        start = above;
+    }
+    let behind = &whole[span.end as usize..];
+    let rest = behind.split(['\n', '\r']).next().unwrap_or_default();
+    let is_alone = rest.trim().is_empty() || rest.trim_start().starts_with("//");
+    let end = rest.len() + behind[rest.len()..].find(|letter| !['\n', '\r'].contains(&letter)).unwrap_or(0).min(1);
+    is_alone.then(|| Span { start: start as u32, end: span.end + end as u32, ..span })
+}
+
+/// Where settings go behind the name of an instance, and what is written there: ` = rack(…)`.
+fn further_settings(behind: &str, definition: &str, settings: &str) -> Option<(usize, String)> {
+    let called = behind.trim_start().strip_prefix('=')?.trim_start().strip_prefix(definition)?;
+    let at = behind.len() - called.len();
+    if !called.starts_with('(') {
+        return Some((at, format!("({settings})")));
+    }
+    let inside = &called[1..length_of_vector(called)? - 1];
+    let given = inside.trim_end().trim_end_matches(',');
+    let comma = if given.trim().is_empty() { "" } else { ", " };
+    Some((at + 1 + given.len(), format!("{comma}{settings}")))
 }
 
 /// Of the brackets that a text begins with.

@@ -37,7 +37,14 @@ pub(super) fn which_piece(context: &mut Context<'_>, name: &Name, pieces: &[&str
     let whole: Vec<String> = pieces.iter().map(|piece| format!("{}.{piece}", name.node)).collect();
     let whole: Vec<&str> = whole.iter().map(String::as_str).collect();
     let help = format!("there is: {}", quoted(&whole));
-    context.report(Diagnostic::new(Code::WrongKind, name.span, message).help(help));
+    let diagnostic = Diagnostic::new(Code::WrongKind, name.span, message).help(help);
+    context.report(choosing(diagnostic, name.span, &whole));
+}
+
+/// Offers each of a few things that may be meant at a place.
+fn choosing(diagnostic: Diagnostic, span: Span, choices: &[&str]) -> Diagnostic {
+    let few = choices.iter().take_while(|_| choices.len() <= READABLE);
+    few.fold(diagnostic, |diagnostic, choice| diagnostic.cure(format!("write `{choice}`"), span, *choice))
 }
 
 impl<'g> Builder<'_, 'g> {
@@ -130,7 +137,8 @@ impl<'g> Builder<'_, 'g> {
             let message = format!("`{}` is a tool; say which of its surfaces", owner.node);
             let list: Vec<&str> = surfaces.iter().map(String::as_str).collect();
             let help = format!("there is: {}", quoted(&list));
-            context.report(Diagnostic::new(Code::WrongKind, owner.span, message).help(help));
+            let diagnostic = Diagnostic::new(Code::WrongKind, owner.span, message).help(help);
+            context.report(choosing(diagnostic, owner.span, &list));
             return None;
         };
         let Some(surface) = built.surfaces.iter().find(|surface| surface.name == member.node) else {
@@ -184,6 +192,37 @@ impl<'g> Builder<'_, 'g> {
             diagnostic = diagnostic.cure(format!("add `{mount}`"), end, format!("    {mount}\n"));
         }
         context.report(diagnostic);
+    }
+
+    /// Reports a job that makes no surface, with those that it could make of its first mounted tool over all its motions.
+    pub(super) fn no_surface(&self, context: &mut Context<'g>, job: &Name) {
+        let message = format!("`{}` makes no surface", job.node);
+        let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
+        let mut diagnostic = Diagnostic::new(Code::NoSurface, job.span, message).help(help);
+        for (written, end) in self.surfaces_to_choose_from().iter().filter_map(|written| Some((written, self.end?))) {
+            diagnostic = diagnostic.cure(format!("add `{written}`"), end, format!("    {written}\n"));
+        }
+        context.report(diagnostic);
+    }
+
+    fn surfaces_to_choose_from(&self) -> Vec<String> {
+        let mounted = self.tools.iter().find_map(|(name, _, built)| {
+            let frame = self.mounts.get(&name.node)?.0?;
+            let surface = built.surfaces.first()?;
+            Some((format!("{}.{}", name.node, surface.name), surface.name.clone(), self.frame_name(frame)))
+        });
+        let Some((path, name, frame)) = mounted.filter(|(_, name, _)| !self.names.contains_key(name)) else {
+            return Vec::new();
+        };
+        let motions = self.motions.iter().filter(|motion| !self.unknowns.contains(&motion.variable));
+        let motions: Vec<&str> = motions.map(|motion| motion.name.as_str()).collect();
+        let over = match motions[..] {
+            [] => return Vec::new(),
+            [motion] => motion.to_string(),
+            _ => format!("[{}]", motions.join(", ")),
+        };
+        let works = self.frames_to_choose_from().into_iter().filter(|work| *work != frame);
+        works.map(|work| format!("surface {name} in {work} = envelope({path}, over: {over})")).collect()
     }
 
     /// The frames that a tool may sit on; none where they are too many to read.

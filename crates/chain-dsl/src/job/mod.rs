@@ -32,6 +32,7 @@ use crate::definitions::requirement;
 use crate::definitions::tool::{self, BuiltTool, Tools};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::decisive::Decisive;
 use crate::job::sampled::SampledPoints;
@@ -276,9 +277,7 @@ fn with_points<'g>(
     // a job whose name could not be read has been reported
     let is_whole = !job.name.node.is_empty();
     if is_whole && !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
-        let message = format!("`{}` makes no surface", job.name.node);
-        let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
-        context.report(Diagnostic::new(Code::NoSurface, job.name.span, message).help(help));
+        builder.no_surface(context, &job.name);
     }
     let is_settled = context.is_whole && builder.sampled.are_known();
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
@@ -636,6 +635,7 @@ fn are_even(context: &mut Context<'_>, first: Listed, second: Listed, help: &str
         count => format!("{count} {several}"),
     };
     let message = format!("{} for {}", counted(&longer), counted(&shorter));
-    context.report(Diagnostic::new(Code::UnevenLists, *lonely, message).help(help));
+    let left_out = Rewriting::Entry(*lonely);
+    context.report(Diagnostic::new(Code::UnevenLists, *lonely, message).help(help).rewriting(left_out));
     false
 }

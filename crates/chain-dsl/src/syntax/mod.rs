@@ -13,6 +13,7 @@ mod grammar;
 mod lex;
 mod limits;
 mod pieces;
+mod possible;
 mod recover;
 mod salvage;
 mod scan;
@@ -24,6 +25,7 @@ use crate::diagnostics::source::{FileId, Span};
 use crate::diagnostics::{Diagnostic, Severity};
 
 pub(crate) use concrete::{Kind, Part};
+pub use possible::{Piece, Possible, possible_behind};
 pub use scan::{Comment, CommentKind};
 pub use words::Vocabulary;
 

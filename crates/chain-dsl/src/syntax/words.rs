@@ -78,6 +78,14 @@ pub struct Vocabulary {
     pub dimensions: &'static [&'static str],
     /// Functions, transforms, ways to make a surface.
     pub functions: Vec<&'static str>,
+    /// What every point has, and what samples and milling passes run by.
+    pub coordinates: &'static [&'static str],
+    /// What may become of a point.
+    pub statuses: &'static [&'static str],
+    /// What is known of a contact once it is solved.
+    pub of_contacts: Vec<&'static str>,
+    /// What is known of a solid.
+    pub of_solids: Vec<&'static str>,
 }
 
 pub(super) fn vocabulary() -> Vocabulary {
@@ -93,6 +101,10 @@ pub(super) fn vocabulary() -> Vocabulary {
         units: UNITS,
         dimensions: DIMENSIONS,
         functions: crate::definitions::index::functions(),
+        coordinates: &crate::definitions::index::OF_POINTS,
+        statuses: &crate::job::expect::STATUSES,
+        of_contacts: crate::job::expect::numbers_of_contacts().collect(),
+        of_solids: crate::job::expect::numbers_of_solids().collect(),
     }
 }
 

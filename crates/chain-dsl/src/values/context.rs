@@ -511,10 +511,13 @@ pub(crate) fn suggesting<'a>(
     let meant = diagnostic.help.as_deref().and_then(|help| help.strip_prefix("did you mean `")?.strip_suffix("`?"));
     match meant.map(str::to_string) {
         Some(meant) => diagnostic.cure(format!("write `{meant}`"), name.span, meant),
-        None => match known[..] {
-            [only] if !only.is_empty() => diagnostic.cure(format!("write `{only}`"), name.span, only),
-            _ => diagnostic,
-        },
+        None => {
+            let mut known = known;
+            known.sort_unstable();
+            known.dedup();
+            let few = known.iter().filter(|choice| !choice.is_empty() && known.len() <= READABLE);
+            few.fold(diagnostic, |diagnostic, choice| diagnostic.cure(format!("write `{choice}`"), name.span, *choice))
+        }
     }
 }
 

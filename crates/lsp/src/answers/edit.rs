@@ -21,14 +21,20 @@ pub(crate) fn completion(snapshot: &Snapshot, params: CompletionParams) -> Optio
     let opened = snapshot.opened(&at.text_document.uri)?;
     let found = opened.analysis.completions(opened.offset(at.position));
     let lines = opened.lines();
-    let items = found.iter().enumerate().map(|(rank, proposal)| item(proposal, rank, &lines)).collect();
+    let items = found
+        .iter()
+        .enumerate()
+        .map(|(rank, proposal)| item(proposal, rank, &lines, snapshot.options.snippets))
+        .collect();
     let list = CompletionList { is_incomplete: false, item_defaults: None, apply_kind: None, items };
     Some(CompletionResponse::CompletionList(list))
 }
 
-fn item(proposal: &Completion, rank: usize, lines: &Lines<'_>) -> CompletionItem {
+fn item(proposal: &Completion, rank: usize, lines: &Lines<'_>, snippets: bool) -> CompletionItem {
     let range = lines.range(proposal.replaces.start, proposal.replaces.end);
-    let format = if proposal.is_snippet { InsertTextFormat::Snippet } else { InsertTextFormat::PlainText };
+    let has_places = proposal.is_snippet && snippets;
+    let format = if has_places { InsertTextFormat::Snippet } else { InsertTextFormat::PlainText };
+    let new_text = if has_places { proposal.text.clone() } else { proposal.plain_text() };
     CompletionItem {
         label: proposal.label.clone(),
         kind: Some(item_kind(proposal.kind)),
@@ -36,7 +42,7 @@ fn item(proposal: &Completion, rank: usize, lines: &Lines<'_>) -> CompletionItem
         // editors sort by this text
         sort_text: Some(format!("{rank:04}")),
         insert_text_format: Some(format),
-        text_edit: Some(CompletionItemTextEdit::TextEdit(TextEdit { range, new_text: proposal.text.clone() })),
+        text_edit: Some(CompletionItemTextEdit::TextEdit(TextEdit { range, new_text })),
         ..CompletionItem::default()
     }
 }

@@ -6,7 +6,7 @@ use crate::diagnostics::source::Name;
 use crate::syntax::ast::{Call, Dimension, Expression, ExpressionKind, Path, Range};
 
 /// What every point has, and what samples and milling passes run by.
-const OF_POINTS: [&str; 19] = [
+pub(crate) const OF_POINTS: [&str; 19] = [
     "x",
     "y",
     "z",

@@ -240,7 +240,10 @@ impl Pose<'_> {
                         "it moves `{}` against `{}`: give its value in `at ({}: …)`",
                         frame.node, reference.node, axis.name
                     );
-                    wrong(context, frame.span, message, help);
+                    let zero = shown(0.0, axis.dimension);
+                    let stands = Rewriting::Pose(frame.span, format!("{}: {zero}", axis.name));
+                    context
+                        .report(Diagnostic::new(Code::Expectation, frame.span, message).help(help).rewriting(stands));
                     return None;
                 }
             }

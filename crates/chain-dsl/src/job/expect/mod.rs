@@ -11,6 +11,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
+use crate::model::RangedVariable;
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role, did_you_mean};
 use crate::values::dimension::{Dimension, shown};
@@ -21,9 +22,10 @@ use model::{Expectation, Expected, ExpectedError};
 use quantities::Named;
 
 pub(crate) use machine::of_machine;
+pub(crate) use quantities::{numbers_of_contacts, numbers_of_solids};
 
 /// What becomes of points, in the words of tables.
-const STATUSES: [&str; 8] =
+pub(crate) const STATUSES: [&str; 8] =
     ["solved", "undercut", "trimmed", "out_of_range", "ambiguous", "undecided", "singular", "not_converged"];
 
 /// What stands for all sampled surfaces.
@@ -122,8 +124,24 @@ impl<'g> Builder<'_, 'g> {
             return Some(index);
         }
         let message = format!("`{}` is not sampled: nothing says at which points it is expected", path.joined());
-        wrong(context, path.span, message, format!("add `sample {} {{ … }}`", path.joined()));
+        let help = format!("add `sample {} {{ … }}`", path.joined());
+        let mut diagnostic = Diagnostic::new(Code::Expectation, path.span, message).help(help);
+        if let (Some(sample), Some(end)) = (self.whole_sample(index), self.end) {
+            diagnostic = diagnostic.cure(format!("add `{sample}`"), end, format!("    {sample}\n"));
+        }
+        context.report(diagnostic);
         None
+    }
+
+    /// A sample of a surface over the ranges of two unknowns: the last ones, as an envelope binds the first to the others.
+    fn whole_sample(&self, index: usize) -> Option<String> {
+        let surface = &self.surfaces[index].0;
+        let [.., first, second] = surface.unknowns.as_slice() else { return None };
+        let entry = |unknown: &RangedVariable<'_>| {
+            let [low, high] = [unknown.low, unknown.high].map(|end| shown(end, unknown.dimension));
+            (unknown.low < unknown.high).then(|| format!("{}: {low} .. {high} by 9", unknown.name))
+        };
+        Some(format!("sample {} {{ {}, {} }}", surface.name, entry(first)?, entry(second)?))
     }
 
     fn status(

@@ -44,6 +44,16 @@ const SOLID_NUMBERS: [(&str, SolidNumber, Dimension); 5] = [
     ("form_diameter", SolidNumber::FormDiameter, Dimension::LENGTH),
 ];
 
+/// Of contacts, by their names.
+pub(crate) fn numbers_of_contacts() -> impl Iterator<Item = &'static str> {
+    CONTACT_NUMBERS.iter().map(|(name, _)| *name)
+}
+
+/// Of bodies, by their names.
+pub(crate) fn numbers_of_solids() -> impl Iterator<Item = &'static str> {
+    SOLID_NUMBERS.iter().map(|(name, ..)| *name)
+}
+
 /// Of bodies with a number, as `thickness(gear, 93 mm)`.
 const SOLID_FUNCTIONS: [&str; 3] = ["thickness", "span", "over_balls"];
 /// Of two surfaces, as `rms(concave, plain.concave)`.

@@ -19,7 +19,7 @@ impl Mistake<'_> {
             && self.scan.is_name(self.found)
             && self.scan.say(self.found + 1) != ":"
             && self.expected.iter().any(|rule| matches!(rule, Rule::unit_word | Rule::infix));
-        let like = closest(self.say(), words::UNITS.iter().copied());
+        let like = closest(self.say(), words::UNITS.iter().copied()).or_else(|| of_same_letters(self.say()));
         if !unit || like.is_none() && self.misspelt(&expected::relevant(self.expected.clone())).is_some() {
             return None;
         }
@@ -30,7 +30,9 @@ impl Mistake<'_> {
         let diagnostic = self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help);
         Some(match like {
             Some(meant) => diagnostic.cure(format!("write `{meant}`"), self.place(), meant),
-            None => diagnostic,
+            None => words::UNITS
+                .iter()
+                .fold(diagnostic, |diagnostic, unit| diagnostic.cure(format!("write `{unit}`"), self.place(), *unit)),
         })
     }
 
@@ -89,4 +91,14 @@ fn dimension_of(unit: &str) -> &'static str {
         "deg" | "rad" | "arcmin" | "arcsec" | "rev" => "angle",
         _ => "length",
     }
+}
+
+/// The unit whose letters came in another order.
+fn of_same_letters(word: &str) -> Option<&'static str> {
+    let sorted = |word: &str| {
+        let mut letters: Vec<char> = word.chars().take(10).collect();
+        letters.sort_unstable();
+        letters
+    };
+    words::UNITS.iter().copied().find(|unit| sorted(unit) == sorted(word))
 }

@@ -1,0 +1,2 @@
+[(machine) (tool) (job) (function) (profile) (tool_surface) (sample) (mill) (settings) (arguments) (vector)] @indent
+["}" ")" "]"] @outdent

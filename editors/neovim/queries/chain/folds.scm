@@ -1,0 +1,1 @@
+[(machine) (tool) (job) (function) (profile) (tool_surface) (sample) (mill) (settings) (arguments) (vector)] @fold
