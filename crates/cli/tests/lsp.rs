@@ -4,8 +4,12 @@ mod support;
 
 #[path = "lsp/client.rs"]
 mod client;
+#[path = "lsp/editors.rs"]
+mod editors;
 #[path = "lsp/focus.rs"]
 mod focus;
+#[path = "lsp/older.rs"]
+mod older;
 #[path = "lsp/sessions.rs"]
 mod sessions;
 #[path = "lsp/shipped.rs"]

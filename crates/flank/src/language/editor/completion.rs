@@ -1,5 +1,7 @@
 //! What may be written at a place.
 
+use std::collections::HashSet;
+
 use flank_chain_dsl::syntax::vocabulary;
 use flank_chain_dsl::{Dimension, NameKind, SymbolId, unit_size};
 
@@ -66,6 +68,8 @@ struct List<'a> {
     of: &'a Analysis,
     replaces: TextSpan,
     found: Vec<Completion>,
+    /// Labels and texts of those.
+    known: HashSet<(String, String)>,
 }
 
 impl List<'_> {
@@ -74,7 +78,7 @@ impl List<'_> {
     }
 
     fn add_text(&mut self, label: &str, kind: CompletionKind, detail: impl Into<String>, text: String, rank: u8) {
-        if label.is_empty() || self.found.iter().any(|known| known.label == label && known.text == text) {
+        if label.is_empty() || !self.known.insert((label.to_string(), text.clone())) {
             return;
         }
         self.found.push(Completion {
@@ -119,7 +123,7 @@ impl Analysis {
             return Vec::new();
         }
         let replaces = TextSpan { file, start: cursor.word, end: offset };
-        let mut list = List { of: self, replaces, found: Vec::new() };
+        let mut list = List { of: self, replaces, found: Vec::new(), known: HashSet::new() };
         self.fill(&cursor, &mut list);
         let mut found = list.found;
         found.sort_by(|a, b| (a.rank, &a.label).cmp(&(b.rank, &b.label)));
