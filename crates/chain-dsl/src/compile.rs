@@ -218,7 +218,7 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
     let mut index = Index::default();
     if request.whole {
         index = Index::of_files(&files, &used);
-        index.values = context.known_values();
+        (index.values, index.dimensions) = context.known_values();
     }
     context.tables.tell(&mut sources);
     let failed = context.has_errors();

@@ -6,8 +6,12 @@ mod support;
 mod client;
 #[path = "lsp/completion.rs"]
 mod completion;
+#[path = "lsp/editors.rs"]
+mod editors;
 #[path = "lsp/focus.rs"]
 mod focus;
+#[path = "lsp/older.rs"]
+mod older;
 #[path = "lsp/sessions.rs"]
 mod sessions;
 #[path = "lsp/shipped.rs"]

@@ -19,6 +19,14 @@ pub(super) struct Document {
     /// Of the text, as the editor counts.
     pub(super) version: i32,
     pub(super) text: Arc<str>,
+    /// The generation of all texts with which it came to be as it is.
+    pub(super) since: u64,
+}
+
+impl Document {
+    pub(super) fn new(uri: String, version: i32, text: String) -> Document {
+        Document { uri, version, text: text.into(), since: 0 }
+    }
 }
 
 /// All texts in the editor by their paths.
@@ -30,9 +38,10 @@ pub(super) struct Documents {
 }
 
 impl Documents {
-    pub(super) fn open(&mut self, document: Document) -> PathBuf {
+    pub(super) fn open(&mut self, mut document: Document) -> PathBuf {
         let path = real(&uri::path(&document.uri));
         self.generation += 1;
+        document.since = self.generation;
         Arc::make_mut(&mut self.open).insert(path.clone(), document);
         path
     }
@@ -59,6 +68,7 @@ impl Documents {
         }
         document.text = text.into();
         document.version = version;
+        document.since = self.generation;
         true
     }
 

@@ -66,10 +66,43 @@ fn body(from: &mut impl BufRead, length: usize) -> io::Result<Frame> {
         Err(error) if error.kind() == ErrorKind::UnexpectedEof => return Ok(Frame::End),
         Err(error) => return Err(error),
     }
-    Ok(match serde_json::from_slice(&bytes) {
+    let read = serde_json::from_slice(&bytes).or_else(|error| {
+        let is_mended = replace_lone_surrogates(&mut bytes);
+        if is_mended { serde_json::from_slice(&bytes) } else { Err(error) }
+    });
+    Ok(match read {
         Ok(message) => Frame::Message(message),
         Err(error) => Frame::NoMessage(format!("no message: {error}")),
     })
+}
+
+/// Writes U+FFFD for each half of a letter of two units that stands alone, as `\ud83d`: editors that keep texts in such units send them, and a change
+/// that is passed over would leave a text that is not the editor's. True where there is one.
+fn replace_lone_surrogates(json: &mut [u8]) -> bool {
+    let (mut at, mut is_any) = (0, false);
+    while at < json.len() {
+        let own = unit(&json[at..]);
+        let next = json.get(at + 6..).and_then(unit);
+        match (own, next) {
+            (Some(0xD800..=0xDBFF), Some(0xDC00..=0xDFFF)) => at += 12,
+            (Some(0xD800..=0xDFFF), _) => {
+                json[at + 2..at + 6].copy_from_slice(b"fffd");
+                is_any = true;
+                at += 6;
+            }
+            // whatever else stands behind a backslash is no beginning
+            _ => at += if json[at] == b'\\' { 2 } else { 1 },
+        }
+    }
+    is_any
+}
+
+/// The unit that `\ud83d` at the beginning stands for.
+fn unit(json: &[u8]) -> Option<u16> {
+    let digits = json.strip_prefix(b"\\u")?.get(..4)?;
+    let is_plain = digits.iter().all(u8::is_ascii_hexdigit);
+    let digits = std::str::from_utf8(digits).ok().filter(|_| is_plain)?;
+    u16::from_str_radix(digits, 16).ok()
 }
 
 fn shortened(text: &str) -> String {
@@ -103,5 +136,21 @@ mod tests {
         assert_eq!(all(format!("Content-Length: -1\r\n{exit}").as_bytes()), ["no header", "exit"]);
         assert_eq!(all(format!("Content-Length: 18446744073709551615\r\n\r\n{exit}").as_bytes()), Vec::<String>::new());
         assert_eq!(all(&exit.as_bytes()[..exit.len() - 1]), Vec::<String>::new());
+    }
+
+    #[test]
+    fn halves_of_letters_that_stand_alone_are_replaced() {
+        for (given, expected) in [
+            (r"\ud83d", r"\ufffd"),
+            (r"\ud83d\ude00", r"\ud83d\ude00"),
+            (r"\ude00\ud83d\ud83d\ude00x", r"\ufffd\ufffd\ud83d\ude00x"),
+            (r"\\ud83d\\\ud83d", r"\\ud83d\\\ufffd"),
+            (r"\ud83", r"\ud83"),
+            (r"\u00e9\", r"\u00e9\"),
+        ] {
+            let mut text = given.as_bytes().to_vec();
+            assert_eq!(replace_lone_surrogates(&mut text), given != expected, "{given}");
+            assert_eq!(text, expected.as_bytes(), "{given}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The texts at one moment, and what is known of them.
 
+use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -10,6 +11,7 @@ use gen_lsp_types::{Location, Position, Range, Uri};
 use super::Spelling;
 use super::documents::{Document, Documents};
 use super::position::Lines;
+use super::tasks::Solves;
 
 /// What was compiled, for as long as none of its texts changes.
 #[derive(Clone, Debug, Default)]
@@ -56,10 +58,7 @@ impl Analyses {
 pub(super) struct Snapshot {
     pub(super) documents: Documents,
     pub(super) analyses: Analyses,
-    /// What solves have found of parameters, `job.m.swivel`.
-    pub(super) influences: Arc<BTreeMap<String, String>>,
-    /// What stands beside the lenses of jobs, by path and job.
-    pub(super) outcomes: Arc<BTreeMap<(PathBuf, String), String>>,
+    pub(super) solves: Solves,
     pub(super) options: Options,
     pub(super) spelled: Spelling,
 }
@@ -71,6 +70,8 @@ pub(super) struct Options {
     pub(super) literal_values: bool,
     /// Whether the editor leads through places to fill.
     pub(super) snippets: bool,
+    /// Whether what is said of a name is shown as it is written, not as Markdown.
+    pub(super) plain_text: bool,
 }
 
 /// A text with what is known of it.
@@ -112,17 +113,35 @@ impl Snapshot {
         Project::open(path, Arc::new(self.documents.clone()))
     }
 
-    pub(super) fn location(&self, analysis: &Analysis, span: &TextSpan) -> Option<Location> {
-        Some(Location { uri: Uri(self.documents.uri_of(&span.file)), range: self.range(analysis, span)? })
+    pub(super) fn places<'s>(&'s self, analysis: &'s Analysis) -> Places<'s> {
+        Places { documents: &self.documents, analysis, lines: RefCell::default() }
+    }
+}
+
+/// Places in the files of a compiled spec as the editor counts them: the lines of each text are looked for once.
+pub(super) struct Places<'s> {
+    documents: &'s Documents,
+    analysis: &'s Analysis,
+    lines: RefCell<BTreeMap<PathBuf, Lines<'s>>>,
+}
+
+impl<'s> Places<'s> {
+    pub(super) fn location(&self, span: &TextSpan) -> Option<Location> {
+        Some(Location { uri: Uri(self.documents.uri_of(&span.file)), range: self.range(span)? })
     }
 
-    pub(super) fn range(&self, analysis: &Analysis, span: &TextSpan) -> Option<Range> {
-        if let Some(text) = analysis.text_of(&span.file) {
-            return Some(Lines::of(text).range(span.start, span.end));
+    pub(super) fn range(&self, span: &TextSpan) -> Option<Range> {
+        let mut lines = self.lines.borrow_mut();
+        if !lines.contains_key(&span.file) {
+            lines.insert(span.file.clone(), Lines::of(self.text(&span.file)?));
         }
-        // of the library, into which no `use` leads
-        let text = flank::ShippedFiles::text(flank::ShippedFiles::inside(&span.file)?)?;
-        Some(Lines::of(text).range(span.start, span.end))
+        lines.get(&span.file).map(|lines| lines.range(span.start, span.end))
+    }
+
+    /// Of the library there may be texts into which no `use` leads.
+    fn text(&self, file: &Path) -> Option<&'s str> {
+        let shipped = || flank::ShippedFiles::text(flank::ShippedFiles::inside(file)?);
+        self.analysis.text_of(file).or_else(shipped)
     }
 }
 

@@ -1,12 +1,13 @@
 //! What takes longer than an answer may: solving, reports, the page that follows.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::SyncSender;
 
 use flank::{
     EvaluatorOptions, Failure, JobSelection, Project, ReportFormat, ReportRequest, ShippedFiles, SolveRequest,
-    SolveResult, Unwatched,
+    SolveResult, Unwatched, analyse,
 };
 use gen_lsp_types::{TextDocumentContentParams, TextDocumentContentResult};
 use lsp_server::Notification;
@@ -61,10 +62,47 @@ impl Asked {
 pub(super) struct Outcome {
     pub(super) spec: PathBuf,
     pub(super) job: String,
+    /// The texts that it was solved from: their generation, and what tells them from others.
+    pub(super) generation: u64,
+    pub(super) texts: u64,
     /// `concave 465/465 · 0.9e-12`, or why not.
     pub(super) told: Result<String, String>,
     /// How far parameters move surfaces, by their names with the job's.
     pub(super) influences: Vec<(String, String)>,
+}
+
+/// What solves have found, by spec and job. It is about the texts that it was found from, and about no others.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Solves {
+    of: Arc<BTreeMap<(PathBuf, String), Outcome>>,
+}
+
+impl Solves {
+    pub(super) fn put(&mut self, outcome: Outcome) {
+        Arc::make_mut(&mut self.of).insert((outcome.spec.clone(), outcome.job.clone()), outcome);
+    }
+
+    pub(super) fn is_known_of(&self, spec: &Path) -> bool {
+        self.of(spec).next().is_some()
+    }
+
+    /// What stands beside the lens of a job.
+    pub(super) fn told<'s>(&'s self, spec: &'s Path, job: &str, texts: u64) -> Option<&'s str> {
+        let found = self.of(spec).find(|found| found.texts == texts && found.job == job)?;
+        found.told.as_deref().ok()
+    }
+
+    /// How far a parameter moves surfaces, `job.m.swivel`.
+    pub(super) fn influence<'s>(&'s self, spec: &'s Path, parameter: &str, texts: u64) -> Option<&'s str> {
+        let now = self.of(spec).filter(|found| found.texts == texts);
+        let (_, told) = now.flat_map(|found| &found.influences).find(|(name, _)| name == parameter)?;
+        Some(told)
+    }
+
+    fn of<'s>(&'s self, spec: &'s Path) -> impl Iterator<Item = &'s Outcome> {
+        let from = (spec.to_path_buf(), String::new());
+        self.of.range(from..).take_while(move |((of, _), _)| of == spec).map(|(_, outcome)| outcome)
+    }
 }
 
 /// Work that goes on beside the conversation.
@@ -95,9 +133,9 @@ impl Tasks {
         match asked {
             Asked::Solve { uri, job } => {
                 let (spec, project) = spec(opened(&uri)?, documents);
-                let events = self.events.clone();
+                let (events, generation) = (self.events.clone(), documents.generation);
                 begin(move || {
-                    let outcome = solve((spec, project), job, spelled);
+                    let outcome = solve((spec, project, generation), job, spelled);
                     let _ = events.send(Event::Solved(outcome));
                 })?;
                 Ok(Value::Null)
@@ -137,7 +175,8 @@ impl Tasks {
 
     /// The spec in focus is shown, where a page is open.
     pub(super) fn focus(&mut self, path: &Path, documents: &Documents) {
-        if self.live.is_some() && self.shown.as_deref() != Some(path) {
+        let is_shipped = ShippedFiles::inside(path).is_some();
+        if self.live.is_some() && !is_shipped && self.shown.as_deref() != Some(path) {
             self.job = None;
             self.show(path, documents);
         }
@@ -177,7 +216,8 @@ fn in_words(failure: &Failure, spelled: Spelling) -> String {
 }
 
 /// Solves a job without writing anything.
-fn solve((spec, project): (PathBuf, Project), job: String, spelled: Spelling) -> Outcome {
+fn solve((spec, project, generation): (PathBuf, Project, u64), job: String, spelled: Spelling) -> Outcome {
+    let texts = analyse(&project).texts();
     let selection = JobSelection { project, job: Some(job.clone()), set: Vec::new() };
     // where nothing is written, no folder is made that was not there
     let out = spec.parent().unwrap_or(Path::new(".")).to_path_buf();
@@ -211,7 +251,7 @@ fn solve((spec, project): (PathBuf, Project), job: String, spelled: Spelling) ->
         }
     });
     let told = solved.map(|()| told.join(", ")).map_err(|failure| in_words(&failure, spelled));
-    Outcome { spec, job, told, influences: joined(influences) }
+    Outcome { spec, job, generation, texts, told, influences: joined(influences) }
 }
 
 /// What is said of one parameter for several surfaces.

@@ -56,7 +56,8 @@ fn encoded(path: &str) -> String {
     out
 }
 
-fn decoded(text: &str) -> String {
+/// Without percent signs; whatever is no UTF-8 then is U+FFFD.
+pub(super) fn decoded(text: &str) -> String {
     let bytes = text.as_bytes();
     let digit = |at: usize| bytes.get(at).and_then(|byte| char::from(*byte).to_digit(16));
     let (mut out, mut at) = (Vec::new(), 0);

@@ -79,6 +79,8 @@ pub struct Type {
     pub dimension: Dimension,
     /// The number of elements of a vector.
     pub size: Option<usize>,
+    /// All of it.
+    pub span: Span,
 }
 
 /// A machine: parameters, axes, frames.
@@ -160,6 +162,8 @@ pub struct Axis {
     pub name: Name,
     /// Linear or rotary.
     pub kind: AxisKind,
+    /// Where that is said; the name where it is not.
+    pub kind_span: Span,
     /// Travel.
     pub range: Option<Range>,
     /// `unknown X : …`: closed loops give its motion.

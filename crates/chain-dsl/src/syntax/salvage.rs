@@ -174,7 +174,8 @@ impl Piece<'_> {
     }
 
     fn value_type(&self, after: usize) -> Type {
-        Type { dimension: self.dimension(after), size: None }
+        let dimension = self.dimension(after);
+        Type { size: None, span: dimension.span, dimension }
     }
 
     fn range(&self) -> super::ast::Range {
@@ -213,9 +214,9 @@ impl Piece<'_> {
 
     fn axis(&self, name: Name, is_unknown: bool) -> Axis {
         let kinds = [("linear", AxisKind::Linear), ("rotary", AxisKind::Rotary)];
-        let kind =
-            kinds.into_iter().find(|(word, _)| self.find(word).is_some()).map_or(AxisKind::Unknown, |(_, kind)| kind);
-        Axis { doc: self.doc(), name, kind, range: None, is_unknown }
+        let found = kinds.into_iter().find_map(|(word, kind)| Some((kind, self.scan.place(self.find(word)?))));
+        let (kind, kind_span) = found.unwrap_or((AxisKind::Unknown, name.span));
+        Axis { doc: self.doc(), name, kind, kind_span, range: None, is_unknown }
     }
 
     /// A frame that hangs on another, be it unknown on which: a second root would be a mistake of its own.

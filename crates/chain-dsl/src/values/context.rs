@@ -163,13 +163,13 @@ impl<'g> Context<'g> {
         }
     }
 
-    /// What names amount to, as far as it is known and stands still, sorted by where they are defined.
-    pub(crate) fn known_values(&mut self) -> Vec<KnownValue> {
+    /// What names amount to, as far as it is known and stands still, and the dimensions of the others, both sorted by where they are defined.
+    pub(crate) fn known_values(&mut self) -> (Vec<KnownValue>, Vec<(Span, Dimension)>) {
         let noted = std::mem::take(&mut self.noted);
         let exprs: Vec<Expr<'g>> = noted.iter().map(|noted| noted.value).collect();
         let values = self.graph.evaluate(&exprs, &self.values);
-        let known = noted.into_iter().zip(values).filter(|(_, value)| value.is_finite());
-        let known = known.map(|(NotedValue { name, written, of, dimension, .. }, value)| KnownValue {
+        let (known, others): (Vec<_>, Vec<_>) = noted.into_iter().zip(values).partition(|(_, value)| value.is_finite());
+        let known = known.into_iter().map(|(NotedValue { name, written, of, dimension, .. }, value)| KnownValue {
             name,
             written,
             of: of.to_string(),
@@ -180,7 +180,11 @@ impl<'g> Context<'g> {
         known.sort_by(|a, b| (a.name, &a.of).cmp(&(b.name, &b.of)));
         // a job is built again where splines go through points of its samples
         known.dedup_by(|a, b| (a.name, &a.of, a.value) == (b.name, &b.of, b.value));
-        known
+        let mut others: Vec<(Span, Dimension)> =
+            others.iter().map(|(noted, _)| (noted.name, noted.dimension)).collect();
+        others.sort_by_key(|(name, _)| *name);
+        others.dedup_by_key(|(name, _)| *name);
+        (known, others)
     }
 
     /// Reports the second definition of a name, unless the parser has reported that the name is missing.

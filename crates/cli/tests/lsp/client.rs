@@ -69,10 +69,15 @@ impl Client {
     }
 
     pub fn start() -> Client {
-        let mut client = Client::silent();
         let capabilities = json!({ "window": { "showDocument": { "support": true } }, "workspace": { "codeLens": { "refreshSupport": true } } });
-        let answer =
-            client.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": capabilities }));
+        Client::start_as(&capabilities, &Value::Null)
+    }
+
+    /// Starts the program for an editor that can do something, with options.
+    pub fn start_as(capabilities: &Value, options: &Value) -> Client {
+        let mut client = Client::silent();
+        let editor = json!({ "processId": null, "rootUri": null, "capabilities": capabilities, "initializationOptions": options });
+        let answer = client.ask("initialize", editor);
         let _: gen_lsp_types::InitializeResult =
             serde_json::from_value(answer.expect("it starts")).expect("the protocol's");
         client.tell("initialized", json!({}));
@@ -214,9 +219,14 @@ impl Client {
 
     /// Takes changes as the protocol writes them.
     pub fn change(&mut self, uri: &str, changes: Value) {
+        let params = self.changed(uri, &changes);
+        self.tell("textDocument/didChange", params);
+    }
+
+    /// What is told of a change.
+    pub fn changed(&mut self, uri: &str, changes: &Value) -> Value {
         let version = self.next_version(uri);
-        let document = json!({ "uri": uri, "version": version });
-        self.tell("textDocument/didChange", json!({ "textDocument": document, "contentChanges": changes }));
+        json!({ "textDocument": { "uri": uri, "version": version }, "contentChanges": changes })
     }
 
     /// Ends it as editors do; the exit code.

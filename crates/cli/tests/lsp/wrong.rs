@@ -189,6 +189,63 @@ fn a_text_of_a_mebibyte_and_one_beyond_are_read() {
     assert_eq!(client.end(), Some(0));
 }
 
+/// A text of a mebibyte with tens of thousands of findings: what it costs grows as the text does, and nobody else waits for it.
+#[test]
+fn a_text_of_many_findings_is_in_nobodys_way() {
+    let mut client = Client::start();
+    let [large, small] = ["large", "small"].map(|name| format!("file:///nowhere/{name}.chain"));
+    client.open(&small, SPEC);
+    client.findings(&small);
+    let lines: String = (0..28_000).map(|number| format!("    param x{number} : length = {number} mm\n")).collect();
+    client.open(&large, &format!("machine a {{\n{lines}    frame bed\n}}\n"));
+    let place = json!({ "textDocument": { "uri": small }, "position": { "line": 1, "character": 10 } });
+    let mut longest = Duration::ZERO;
+    let told = loop {
+        let asked = Instant::now();
+        assert!(client.ask("textDocument/hover", place.clone()).expect("an answer").is_object());
+        longest = longest.max(asked.elapsed());
+        if let Some(told) = client.told.remove(&large) {
+            break told;
+        }
+    };
+    assert_eq!(told.diagnostics.len(), 28_000);
+    assert!(longest < Duration::from_secs(15), "{longest:?}");
+    let whole = json!({ "start": { "line": 0, "character": 0 }, "end": { "line": 28_002, "character": 0 } });
+    for method in ["documentSymbol", "completion", "codeAction", "semanticTokens/full", "rangeFormatting"] {
+        let params = json!({
+            "textDocument": { "uri": large },
+            "position": { "line": 9, "character": 28 },
+            "range": whole,
+            "context": { "diagnostics": [], "triggerKind": 1 },
+            "options": { "tabSize": 4, "insertSpaces": true },
+        });
+        client.ask(&format!("textDocument/{method}"), params).expect("an answer");
+    }
+    assert_eq!(client.end(), Some(0));
+}
+
+/// Editors that keep texts in units of UTF-16 may send halves of letters. What they stand in counts like any other change.
+#[test]
+fn half_a_letter_leaves_no_text_out_of_step() {
+    let mut client = Client::start();
+    let uri = "file:///nowhere/half.chain";
+    client.open(uri, SPEC);
+    assert!(client.findings(uri).diagnostics.is_empty());
+    let start = json!({ "line": 0, "character": 0 });
+    let changes = json!([{ "range": { "start": start, "end": start }, "text": "// HALF\nwrong\n" }]);
+    let params = client.changed(uri, &changes);
+    let message = json!({ "jsonrpc": "2.0", "method": "textDocument/didChange", "params": params });
+    let text = message.to_string().replace("HALF", "\\ud83d");
+    client.raw(format!("Content-Length: {}\r\n\r\n{text}", text.len()).as_bytes());
+    let told = client.findings(uri);
+    let first = &told.diagnostics[0];
+    assert_eq!((first.range.start.line, first.range.start.character), (1, 0), "{told:?}");
+    let (from, to) = (json!({ "line": 0, "character": 3 }), json!({ "line": 1, "character": 5 }));
+    client.change(uri, json!([{ "range": { "start": from, "end": to }, "text": "right again" }]));
+    assert!(client.findings(uri).diagnostics.is_empty());
+    assert_eq!(client.end(), Some(0));
+}
+
 #[test]
 fn nothing_is_written() {
     let folder = folder("lsp-nothing");

@@ -16,19 +16,26 @@ pub(crate) fn hover(snapshot: &Snapshot, params: HoverParams) -> Option<Hover> {
     let at = params.text_document_position_params;
     let opened = snapshot.opened(&at.text_document.uri)?;
     let found = opened.analysis.hover(opened.offset(at.position))?;
-    let mut parts = vec![format!("```chain\n{}\n```", found.signature)];
+    let is_plain = snapshot.options.plain_text;
+    let mut parts = vec![if is_plain { found.signature } else { format!("```chain\n{}\n```", found.signature) }];
     parts.extend(found.about);
-    let influences = found.parameters.iter().filter_map(|name| snapshot.influences.get(name));
-    parts.extend(influences.cloned());
-    let contents = Contents::MarkupContent(MarkupContent { kind: MarkupKind::Markdown, value: parts.join("\n\n") });
-    Some(Hover { contents, range: snapshot.range(&opened.analysis, &found.span) })
+    // most names have no parameters, and most specs no solves
+    if !found.parameters.is_empty() && snapshot.solves.is_known_of(&opened.path) {
+        let texts = opened.analysis.texts();
+        let told = found.parameters.iter().filter_map(|name| snapshot.solves.influence(&opened.path, name, texts));
+        parts.extend(told.map(str::to_string));
+    }
+    let kind = if is_plain { MarkupKind::PlainText } else { MarkupKind::Markdown };
+    let value = if is_plain { parts.join("\n\n").replace('`', "") } else { parts.join("\n\n") };
+    let contents = Contents::MarkupContent(MarkupContent { kind, value });
+    Some(Hover { contents, range: snapshot.places(&opened.analysis).range(&found.span) })
 }
 
 pub(crate) fn definition(snapshot: &Snapshot, params: DefinitionParams) -> Option<DefinitionResponse> {
     let at = params.text_document_position_params;
     let opened = snapshot.opened(&at.text_document.uri)?;
     let found = opened.analysis.definition(opened.offset(at.position))?;
-    let location = snapshot.location(&opened.analysis, &found)?;
+    let location = snapshot.places(&opened.analysis).location(&found)?;
     Some(DefinitionResponse::Definition(Definition::Location(location)))
 }
 
@@ -47,9 +54,10 @@ pub(super) fn all_references(snapshot: &Snapshot, definition: &TextSpan) -> Vec<
     let mut all = Vec::new();
     for path in snapshot.documents.paths() {
         let analysis = snapshot.analysis(path);
+        let places = snapshot.places(&analysis);
         for found in analysis.references(definition) {
             if seen.insert(found.clone())
-                && let Some(location) = snapshot.location(&analysis, &found.span)
+                && let Some(location) = places.location(&found.span)
             {
                 all.push((found, location));
             }

@@ -11,9 +11,10 @@ use gen_lsp_types::{
 };
 
 use super::browse::all_references;
+use super::relaid;
 use crate::diagnostics::diagnostic;
 use crate::position::Lines;
-use crate::snapshot::{Opened, Snapshot};
+use crate::snapshot::{Opened, Places, Snapshot};
 use crate::uri::{ERRORS, LIBRARY};
 
 pub(crate) fn completion(snapshot: &Snapshot, params: CompletionParams) -> Option<CompletionResponse> {
@@ -74,8 +75,10 @@ pub(crate) fn format(snapshot: &Snapshot, params: DocumentFormattingParams) -> O
 
 pub(crate) fn format_range(snapshot: &Snapshot, params: DocumentRangeFormattingParams) -> Option<Vec<TextEdit>> {
     let opened = snapshot.opened(&params.text_document.uri)?;
-    let lines = [params.range.start.line as usize, params.range.end.line as usize];
-    formatted(snapshot, &opened, Some(lines))
+    let (start, end) = (params.range.start, params.range.end);
+    // a range that ends where a line begins has nothing of that line
+    let last = if end.character == 0 && end.line > start.line { end.line - 1 } else { end.line };
+    formatted(snapshot, &opened, Some([start.line as usize, last as usize]))
 }
 
 /// The lines that the layout changes, of a range or of all; nothing where the text is wrong.
@@ -84,47 +87,15 @@ fn formatted(snapshot: &Snapshot, opened: &Opened<'_>, within: Option<[usize; 2]
         return Some(Vec::new());
     }
     let laid = lay_out(&snapshot.project(&opened.path)).ok()?;
-    let (before, after) = (&*opened.document.text, &*laid.text);
-    let (old, new): (Vec<&str>, Vec<&str>) =
-        (before.split_inclusive('\n').collect(), after.split_inclusive('\n').collect());
-    let mut edits = Vec::new();
-    for [old_from, old_to, new_from, new_to] in changed(&old, &new) {
-        let is_wanted = within.is_none_or(|[first, last]| old_from <= last && old_to.max(old_from + 1) > first);
-        if is_wanted {
-            let start: usize = old[..old_from].iter().map(|line| line.len()).sum();
-            let end = start + old[old_from..old_to].iter().map(|line| line.len()).sum::<usize>();
-            edits.push(TextEdit { range: opened.lines().range(start, end), new_text: new[new_from..new_to].concat() });
-        }
-    }
-    Some(edits)
-}
-
-/// The runs of lines that differ: from and to in the first, from and to in the second.
-fn changed(old: &[&str], new: &[&str]) -> Vec<[usize; 4]> {
-    /// How far ahead lines that are the same again are looked for.
-    const AHEAD: usize = 200;
-    let (mut a, mut b, mut found) = (0, 0, Vec::new());
-    while a < old.len() || b < new.len() {
-        if a < old.len() && b < new.len() && old[a] == new[b] {
-            (a, b) = (a + 1, b + 1);
-            continue;
-        }
-        // the nearest pair of lines that are the same
-        let meeting = (1..AHEAD).find_map(|steps| {
-            (0..=steps).map(|first| (a + first, b + steps - first)).find(
-                |(x, y)| matches!((old.get(*x), new.get(*y)), (Some(x), Some(y)) if x == y && !x.trim().is_empty()),
-            )
-        });
-        let (x, y) = meeting.unwrap_or((old.len(), new.len()));
-        found.push([a, x, b, y]);
-        (a, b) = (x, y);
-    }
-    found
+    let lines = opened.lines();
+    let edits = relaid::changes(&opened.document.text, &laid.text, within);
+    let edit = |(from, to, new_text)| TextEdit { range: lines.range(from, to), new_text };
+    Some(edits.into_iter().map(edit).collect())
 }
 
 pub(crate) fn code_actions(snapshot: &Snapshot, params: CodeActionParams) -> Option<Vec<CodeActionResponse>> {
     let opened = snapshot.opened(&params.text_document.uri)?;
-    let lines = opened.lines();
+    let (lines, places) = (opened.lines(), snapshot.places(&opened.analysis));
     let (from, to) = (lines.offset(params.range.start), lines.offset(params.range.end));
     let mut actions = Vec::new();
     let mut explained = Vec::new();
@@ -133,14 +104,14 @@ pub(crate) fn code_actions(snapshot: &Snapshot, params: CodeActionParams) -> Opt
         if found.span.file != opened.path || found.span.start > to || found.span.end < from {
             continue;
         }
-        let shown = diagnostic(&found, &opened.analysis, snapshot);
+        let shown = diagnostic(&found, &places, snapshot.spelled);
         for (number, cure) in found.cures.iter().enumerate().filter(|_| wants(&CodeActionKind::QuickFix)) {
             actions.push(CodeActionResponse::CodeAction(CodeAction {
                 title: cure.title.clone(),
                 kind: Some(CodeActionKind::QuickFix),
-                diagnostics: shown.clone().map(|shown| vec![shown]),
+                diagnostics: Some(vec![shown.clone()]),
                 is_preferred: Some(number == 0),
-                edit: Some(workspace_edit(snapshot, &opened, std::slice::from_ref(&cure.edit))?),
+                edit: Some(workspace_edit(&places, std::slice::from_ref(&cure.edit))?),
                 ..CodeAction::default()
             }));
         }
@@ -160,10 +131,10 @@ pub(crate) fn code_actions(snapshot: &Snapshot, params: CodeActionParams) -> Opt
     Some(actions)
 }
 
-fn workspace_edit(snapshot: &Snapshot, opened: &Opened<'_>, edits: &[Edit]) -> Option<WorkspaceEdit> {
+fn workspace_edit(places: &Places<'_>, edits: &[Edit]) -> Option<WorkspaceEdit> {
     let mut changes: HashMap<Uri, Vec<TextEdit>> = HashMap::new();
     for edit in edits {
-        let location = snapshot.location(&opened.analysis, &edit.span)?;
+        let location = places.location(&edit.span)?;
         let edit = TextEdit { range: location.range, new_text: edit.replacement.clone() };
         changes.entry(location.uri).or_default().push(edit);
     }
@@ -215,7 +186,7 @@ fn check_renamed(snapshot: &Snapshot, edits: &[Edit]) -> Result<(), String> {
         own.sort_by_key(|edit| std::cmp::Reverse(edit.span.start));
         own.iter().for_each(|edit| text.replace_range(edit.span.start..edit.span.end, &edit.replacement));
         let uri = snapshot.documents.uri_of(&file);
-        renamed.documents.open(crate::documents::Document { uri, version: 0, text: text.into() });
+        renamed.documents.open(crate::documents::Document::new(uri, 0, text));
     }
     for path in snapshot.documents.paths() {
         let count = |of: &Snapshot| of.analysis(path).findings().len();
@@ -229,18 +200,4 @@ fn check_renamed(snapshot: &Snapshot, edits: &[Edit]) -> Result<(), String> {
         }
     }
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::changed;
-
-    #[test]
-    fn only_lines_that_differ_change() {
-        let old = ["a\n", "b \n", "c\n", "d\n"];
-        assert_eq!(changed(&old, &["a\n", "b\n", "c\n", "d\n"]), [[1, 2, 1, 2]]);
-        assert_eq!(changed(&old, &["a\n", "b \n", "x\n", "c\n", "d\n"]), [[2, 2, 2, 3]]);
-        assert_eq!(changed(&old, &["a\n"]), [[1, 4, 1, 1]]);
-        assert!(changed(&old, &old).is_empty());
-    }
 }

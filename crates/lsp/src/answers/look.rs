@@ -114,10 +114,11 @@ pub(crate) fn inlay_hints(snapshot: &Snapshot, params: InlayHintParams) -> Optio
 pub(crate) fn lenses(snapshot: &Snapshot, params: CodeLensParams) -> Option<Vec<CodeLens>> {
     let opened = snapshot.opened(&params.text_document.uri)?;
     let lines = opened.lines();
+    let texts = opened.analysis.texts();
     let mut lenses = Vec::new();
     for job in opened.analysis.jobs() {
         let range = lines.range(job.span.start, job.span.end);
-        let outcome = snapshot.outcomes.get(&(opened.path.clone(), job.name.clone()));
+        let outcome = snapshot.solves.told(&opened.path, &job.name, texts);
         let solve = outcome.map_or("solve".to_string(), |outcome| format!("solve: {outcome}"));
         for (title, command) in [(solve.as_str(), "flank.solve"), ("view", "flank.preview"), ("report", "flank.report")]
         {

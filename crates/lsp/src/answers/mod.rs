@@ -3,3 +3,4 @@
 pub(super) mod browse;
 pub(super) mod edit;
 pub(super) mod look;
+mod relaid;

@@ -9,6 +9,7 @@ use std::time::Duration;
 use flank::waiting_page;
 
 use super::pages::Pages;
+use crate::uri::decoded;
 
 const SHELL: &str = include_str!("shell.html");
 /// Bytes of a request's head at the most.
@@ -68,9 +69,10 @@ fn answer(stream: &TcpStream, secret: &str, pages: &Pages) -> io::Result<()> {
 /// What a page has of its job alone, and what kind of text it is.
 fn part(inside: &str, pages: &Pages) -> Option<(&'static str, String)> {
     let (part, job) = inside.strip_prefix('/')?.split_once('/')?;
+    let job = decoded(job);
     match part {
-        "data" => Some(("application/json", pages.parts(job)?.data.clone())),
-        "functions" => Some(("text/javascript; charset=utf-8", pages.parts(job)?.functions.clone())),
+        "data" => Some(("application/json", pages.parts(&job)?.data.clone())),
+        "functions" => Some(("text/javascript; charset=utf-8", pages.parts(&job)?.functions.clone())),
         _ => None,
     }
 }

@@ -95,7 +95,7 @@ impl<'a> Names<'a> {
                     members.names.entry(&binding.name.node).or_insert(found);
                 }
                 MachineStatement::Axis(axis) => {
-                    let extent = axis.range.as_ref().map_or(axis.name.span, |range| range.span);
+                    let extent = axis.range.as_ref().map_or(axis.kind_span, |range| range.span);
                     let found = self.define(NameKind::Axis, &axis.name, extent, owner);
                     self.symbol_mut(found).range = axis.range.as_ref().map(|range| range.span);
                     members.names.entry(&axis.name.node).or_insert(found);

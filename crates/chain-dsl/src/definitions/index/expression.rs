@@ -28,6 +28,9 @@ pub(crate) const OF_POINTS: [&str; 19] = [
     "mean_curvature",
 ];
 
+/// What a flank of a blank is asked for by.
+pub(super) const OUTLINE: [&str; 6] = ["toe_root", "heel_root", "toe_tip", "heel_tip", "lengthwise", "profilewise"];
+
 /// Of these, what stands for a point's own before anything of that name in the job: its coordinates, and where it is known its curvatures.
 const FIRST: [&str; 8] = ["x", "y", "z", "rho", "polar_angle", "nx", "ny", "nz"];
 const CURVATURES: [&str; 4] = ["k1", "k2", "gaussian_curvature", "mean_curvature"];
@@ -209,8 +212,10 @@ impl<'a> Names<'a> {
         let is_extreme = place.is_at_points && ["lowest", "highest"].contains(&name);
         let evaluated = place.evaluated;
         for (k, argument) in call.arguments.iter().enumerate() {
-            if let Some(name) = &argument.name {
-                self.word(name.span, if is_table { WordKind::Column } else { WordKind::Argument });
+            match &argument.name {
+                Some(name) if is_table => self.column(name, place),
+                Some(name) => self.word(name.span, WordKind::Argument),
+                None => {}
             }
             place.evaluated = if is_extreme && k == 1 { At::Points } else { evaluated };
             self.argument(&argument.value, is_table, place);
@@ -235,10 +240,19 @@ impl<'a> Names<'a> {
                 return self.word(name.span, WordKind::Dimension);
             }
             if is_table {
-                return self.word(name.span, WordKind::Column);
+                return self.column(name, place);
             }
         }
         self.expression(value, place);
+    }
+
+    /// A column of a table: a motion, a parameter or a coordinate of that name, or one of the language.
+    fn column(&mut self, name: &'a Name, place: &Place<'a>) {
+        let found = self.value(&name.node, &Place { evaluated: At::Points, ..place.clone() });
+        match found {
+            Target::Symbol(id) if is_of_points(self.kind(id)) => self.enter(name.span, found, false),
+            _ => self.word(name.span, WordKind::Column),
+        }
     }
 
     /// A name that must be a frame.
@@ -246,6 +260,11 @@ impl<'a> Names<'a> {
         let found = self.inside(machine, &name.node, Wanted::Other);
         self.refer(name, found.filter(|found| self.kind(*found) == NameKind::Frame), NameKind::Frame);
     }
+}
+
+/// Whether points of surfaces have a value of it.
+pub(super) fn is_of_points(kind: NameKind) -> bool {
+    [NameKind::Motion, NameKind::Unknown, NameKind::SurfaceParameter, NameKind::Coordinate].contains(&kind)
 }
 
 /// All functions, transforms and ways to make a surface.

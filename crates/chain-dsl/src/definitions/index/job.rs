@@ -1,6 +1,6 @@
 //! The names in jobs.
 
-use super::expression::{At, Place};
+use super::expression::{At, OUTLINE, Place, is_of_points};
 use super::members::{Names, Wanted};
 use super::{NameKind, SymbolId, Target, WordKind};
 use crate::diagnostics::source::Name;
@@ -171,7 +171,10 @@ impl<'a> Names<'a> {
     fn coordinate(&mut self, job: SymbolId, key: &'a Name, definition: Option<&'a Expression>, place: &mut Place<'a>) {
         let Some(definition) = definition else {
             let found = self.value(&key.node, &Place { evaluated: At::Points, ..place.clone() });
-            return self.enter(key.span, found, false);
+            let is_coordinate = matches!(found, Target::Symbol(id) if is_of_points(self.kind(id)));
+            // what asks for an outline is no value of the same name
+            let is_word = !is_coordinate && OUTLINE.contains(&key.node.as_str());
+            return self.enter(key.span, if is_word { Target::Word(WordKind::Coordinate) } else { found }, false);
         };
         self.expression(definition, &mut Place { evaluated: At::Points, ..place.clone() });
         let id = self.define(NameKind::Coordinate, key, definition.span, Some(job));
@@ -326,5 +329,29 @@ mod tests {
         }";
         assert_eq!(leads_to(text, "depth"), ["6"]);
         assert_eq!(leads_to(text, "bed"), ["3"]);
+    }
+
+    #[test]
+    fn a_corner_is_no_value_of_the_same_name() {
+        let text = "job j {
+            let toe_root = [1 mm, 2 mm]
+            let lengthwise = 3
+            sample flank { toe_root: toe_root, lengthwise: 0.1 .. lengthwise by 9 }
+        }";
+        assert_eq!(leads_to(text, "toe_root"), ["Word(Coordinate)", "2"]);
+        assert_eq!(leads_to(text, "lengthwise"), ["Word(Coordinate)", "3"]);
+    }
+
+    #[test]
+    fn a_column_of_a_table_leads_to_the_coordinate_of_its_name() {
+        let text = "job j {
+            motion roll : angle in 0 deg .. 9 deg
+            let x = 3 mm
+            surface flank in m.work = envelope(c.face, over: roll)
+            expect flank near table(\"a.csv\", roll, x, y) within 1 um
+            let f = curve(\"b.csv\", roll: angle, x: length)
+        }";
+        assert_eq!(leads_to(text, "roll"), ["2", "2", "2"]);
+        assert_eq!(leads_to(text, "x"), ["Word(Column)", "Word(Column)"]);
     }
 }

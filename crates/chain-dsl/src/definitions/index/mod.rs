@@ -189,6 +189,8 @@ pub struct Index {
     pub entries: Vec<Entry>,
     /// What names amount to, sorted by the place of their definition.
     pub values: Vec<KnownValue>,
+    /// The dimensions of names that amount to no one number, as a `let` of a motion, sorted by the place of their definition.
+    pub dimensions: Vec<(Span, Dimension)>,
 }
 
 impl Index {
@@ -240,6 +242,12 @@ impl Index {
         self.entries
             .iter()
             .filter(move |entry| matches!(entry.target, Target::Symbol(other) if self.root(other) == root))
+    }
+
+    /// The dimension of a definition whose value is no one number.
+    pub fn dimension_of(&self, symbol: &Symbol) -> Option<Dimension> {
+        let found = self.dimensions.binary_search_by_key(&symbol.name, |(name, _)| *name).ok()?;
+        Some(self.dimensions[found].1)
     }
 
     /// What a definition amounts to, for each that has a value.

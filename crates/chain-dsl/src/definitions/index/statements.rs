@@ -36,8 +36,8 @@ impl<'a> Names<'a> {
         let mut place = Place::default();
         for (name, written) in &function.arguments {
             self.dimension(&written.dimension);
-            let argument = self.define(NameKind::Argument, name, written.dimension.span, Some(id));
-            self.symbol_mut(argument).dimension = Some(written.dimension.span);
+            let argument = self.define(NameKind::Argument, name, written.span, Some(id));
+            self.symbol_mut(argument).dimension = Some(written.span);
             place.locals.push((&name.node, argument));
         }
         if let Some(result) = &function.result {

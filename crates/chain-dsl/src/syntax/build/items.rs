@@ -56,10 +56,11 @@ impl Build<'_> {
     }
 
     fn value_type(&mut self, pair: Pair<'_, Rule>) -> Type {
+        let span = self.span(&pair);
         let mut parts = Parts::of(pair);
         let dimension = self.dimension(parts.required(Rule::dimension));
         let size = parts.optional(Rule::size).map(|pair| self.size(Parts::of(pair).required(Rule::integer)));
-        Type { dimension, size }
+        Type { dimension, size, span }
     }
 
     fn size(&mut self, pair: Pair<'_, Rule>) -> usize {

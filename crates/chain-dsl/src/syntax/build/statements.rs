@@ -124,12 +124,14 @@ impl Build<'_> {
         let is_unknown = pair.as_rule() == Rule::unknown_axis;
         let mut parts = Parts::of(pair);
         let name = self.name(parts.required(Rule::name));
-        let kind = match parts.required(Rule::axis_kind).as_str() {
+        let kind = parts.required(Rule::axis_kind);
+        let kind_span = self.span(&kind);
+        let kind = match kind.as_str() {
             "rotary" => AxisKind::Rotary,
             _ => AxisKind::Linear,
         };
         let range = parts.optional(Rule::range).map(|range| self.range(range));
-        Axis { doc, name, kind, range, is_unknown }
+        Axis { doc, name, kind, kind_span, range, is_unknown }
     }
 
     fn nc_word(&mut self, pair: Pair<'_, Rule>) -> NcWord {

@@ -1,5 +1,7 @@
 //! A spec as an editor has it: its texts, what is found in them, its names.
 
+use std::collections::HashSet;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
 use flank_chain_dsl::{Diagnostic, FileId, Index, NameKind, Sources, Span, SymbolId};
@@ -78,15 +80,18 @@ impl Analysis {
     /// All that is found, with places; what is about no file has the place of the spec's first byte.
     pub fn findings(&self) -> Vec<LocatedFinding> {
         let list = Findings::new(&self.diagnostics, &self.sources).list();
-        list.into_iter().zip(&self.diagnostics).map(|(finding, diagnostic)| self.located(finding, diagnostic)).collect()
+        let is_windows: Vec<bool> = self.sources.files().map(|(_, file)| file.text.contains("\r\n")).collect();
+        let both = list.into_iter().zip(&self.diagnostics);
+        both.map(|(finding, diagnostic)| self.located(finding, diagnostic, &is_windows)).collect()
     }
 
-    fn located(&self, finding: Finding, diagnostic: &Diagnostic) -> LocatedFinding {
+    /// With the changes that mend it: each with the line ends of its text.
+    fn located(&self, finding: Finding, diagnostic: &Diagnostic, is_windows: &[bool]) -> LocatedFinding {
         let start = Span { file: self.main, start: 0, end: 0 };
         let of_main = || self.text_span(start).unwrap_or_else(|| self.shown_span(start));
         let notes = diagnostic.notes.iter();
         let cures = diagnostic.cures.iter().filter_map(|cure| {
-            let replacement = self.with_line_ends_of(cure.span.file, &cure.replacement);
+            let replacement = with_line_ends(&cure.replacement, is_windows[cure.span.file.0 as usize]);
             let edit = TextEdit { span: self.text_span(cure.span)?, replacement };
             Some(TextCure { title: cure.title.clone(), edit })
         });
@@ -98,10 +103,13 @@ impl Analysis {
         }
     }
 
-    /// A text of several lines as it is written into a file.
-    fn with_line_ends_of(&self, file: FileId, text: &str) -> String {
-        let is_windows = self.sources.file(file).text.contains("\r\n");
-        if is_windows { text.replace("\r\n", "\n").replace('\n', "\r\n") } else { text.to_string() }
+    /// Tells the texts and tables that were read from others.
+    pub fn texts(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for (_, file) in self.sources.files() {
+            (&file.path, &file.text).hash(&mut hasher);
+        }
+        hasher.finish()
     }
 
     /// The files that were read, without links and `..`, the spec itself first.
@@ -141,20 +149,16 @@ impl Analysis {
 
     /// Definitions that belong to one, or to what it extends, the nearest first.
     pub(super) fn members(&self, owner: SymbolId) -> Vec<SymbolId> {
-        let mut found: Vec<SymbolId> = Vec::new();
+        let (mut found, mut known) = (Vec::new(), HashSet::new());
         let mut at = Some(owner);
         // as many steps as there are definitions: a circle is wrong, and ends here
         for _ in 0..self.index.symbols.len() {
             let Some(of) = at else { break };
             let own = self.index.symbols.iter().zip(0u32..).filter(|(symbol, _)| symbol.owner == Some(of));
             let own: Vec<SymbolId> = own.map(|(_, id)| SymbolId(id)).collect();
-            let is_new = |id: &SymbolId| {
-                let is_same =
-                    |known: &SymbolId| self.name(*known) == self.name(*id) && self.kind(*known) == self.kind(*id);
-                !found.iter().any(is_same)
-            };
-            let new: Vec<SymbolId> = own.into_iter().filter(is_new).collect();
-            found.extend(new);
+            // two of one name in one place are both told: it is an error
+            found.extend(own.iter().copied().filter(|id| !known.contains(&(self.name(*id), self.kind(*id)))));
+            known.extend(own.iter().map(|id| (self.name(*id), self.kind(*id))));
             at = self.index.symbol(of).definition.filter(|_| self.is_item(of));
         }
         found
@@ -173,6 +177,10 @@ impl Analysis {
         let all = self.index.symbols.iter().zip(0u32..);
         all.filter(|(symbol, _)| symbol.owner.is_none() && is_item_kind(symbol.kind)).map(|(_, id)| SymbolId(id))
     }
+}
+
+fn with_line_ends(text: &str, is_windows: bool) -> String {
+    if is_windows { text.replace("\r\n", "\n").replace('\n', "\r\n") } else { text.to_string() }
 }
 
 fn is_item_kind(kind: NameKind) -> bool {

@@ -71,6 +71,42 @@ const FUNCTIONS: [(&str, &str, &str); 67] = [
     ("slope", "slope(surface, other)", "slope of the deviation"),
 ];
 
+/// What is known of contacts, solids and surfaces once they are solved, and of segments.
+const NUMBERS: [(&str, &str); 27] = [
+    ("ratio", "of a contact: how long the flanks of one pair of teeth touch, in pitches"),
+    ("peak_to_peak", "of a contact: the error of the motion from its lowest to its highest, over a pitch"),
+    ("turn", "of a contact: the roll in its middle"),
+    ("lag", "of a contact: the error of the motion in its middle"),
+    ("parabola", "of a contact: the second derivative of the error of the motion by the roll"),
+    ("backlash", "of a contact: how far the driven member can move between both flanks, at the tightest place"),
+    ("normal_backlash", "of a contact: the backlash along the normals of the flanks"),
+    ("clearance", "of a contact: the least that edges leave to the fillet and the root of the mate"),
+    ("half_length", "of a contact: half the long axis of its ellipse"),
+    ("half_width", "of a contact: half the short axis of its ellipse"),
+    ("gap_high", "of a contact: the larger curvature of the gap"),
+    ("gap_low", "of a contact: the smaller curvature of the gap"),
+    ("pairs", "of a contact: how many pairs of teeth are within the film at a time"),
+    ("z1", "of a contact: where its middle lies along the axis of the first body"),
+    ("rho1", "of a contact: how far its middle lies from the axis of the first body"),
+    ("z2", "of a contact: where its middle lies along the axis of the second body"),
+    ("rho2", "of a contact: how far its middle lies from the axis of the second body"),
+    ("volume", "of a solid: its volume"),
+    ("area", "of a solid: the area of its surface"),
+    ("tip_diameter", "of a solid: the diameter at the tips of its teeth"),
+    ("root_diameter", "of a solid: the diameter at the bottom of its spaces"),
+    ("form_diameter", "of a solid: the diameter from which on its flanks are usable"),
+    ("singular_line", "of a surface: the line on which it has no tangent plane"),
+    ("contact_limit", "of a surface: the line beyond which the tool does not leave the points that it makes"),
+    ("trim_line", "of a surface: the line at which another one ends it"),
+    ("from", "of a segment: where it begins"),
+    ("to", "of a segment: where it ends"),
+];
+
+/// What a number is that is known once something is solved.
+pub(super) fn number_about(name: &str) -> Option<&'static str> {
+    NUMBERS.iter().find(|(known, _)| *known == name).map(|(_, about)| *about)
+}
+
 /// How a function is called, and what it gives.
 pub(super) fn function_about(name: &str) -> Option<(&'static str, &'static str)> {
     let found = FUNCTIONS.iter().find(|(known, ..)| *known == name);

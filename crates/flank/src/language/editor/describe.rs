@@ -24,7 +24,7 @@ impl Analysis {
             }
             NameKind::Value => match self.shown_values(symbol).as_slice() {
                 [value] => format!("let {name} = {value}"),
-                _ => format!("let {}", self.one_line(symbol.extent)),
+                _ => format!("let {name}{} = {}", self.dimension_of_let(symbol), self.written_value(symbol)),
             },
             NameKind::Parameter
             | NameKind::MachineError
@@ -48,6 +48,17 @@ impl Analysis {
                 format!("{} {head}", symbol.kind.described())
             }
         }
+    }
+
+    /// ` : angle` of a `let` that amounts to no one number.
+    fn dimension_of_let(&self, symbol: &Symbol) -> String {
+        let known = self.index.values_of(symbol).first().map(|value| value.dimension);
+        let found = self.index.dimension_of(symbol).or(known);
+        found.map_or(String::new(), |dimension| format!(" : {dimension}"))
+    }
+
+    fn written_value(&self, symbol: &Symbol) -> String {
+        symbol.value.map_or(String::new(), |value| self.one_line(value))
     }
 
     /// The values that a definition has, each once.
@@ -77,12 +88,15 @@ impl Analysis {
 
     /// A value in the unit in which it is written, where that is one.
     pub(super) fn shown(&self, value: &KnownValue) -> String {
-        let units = self.index.entries.iter().filter(|entry| {
-            entry.target == Target::Word(WordKind::Unit)
-                && entry.span.file == value.written.file
-                && value.written.start <= entry.span.start
-                && entry.span.end <= value.written.end
-        });
+        // they are in the order of their places
+        let entries = &self.index.entries;
+        let written = value.written;
+        let from = entries.partition_point(|entry| (entry.span.file, entry.span.start) < (written.file, written.start));
+        let within = entries[from..]
+            .iter()
+            .take_while(|entry| entry.span.file == written.file && entry.span.start <= written.end);
+        let units =
+            within.filter(|entry| entry.target == Target::Word(WordKind::Unit) && entry.span.end <= written.end);
         let mut units: Vec<&str> = units.map(|entry| self.sources.text(entry.span)).collect();
         units.dedup();
         if let [unit] = units[..]

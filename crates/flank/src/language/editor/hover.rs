@@ -4,7 +4,7 @@ use flank_chain_dsl::syntax::{TokenKind, tokens};
 use flank_chain_dsl::{Entry, NameKind, Span, SymbolId, Target, WordKind};
 
 use crate::language::editor::analysis::{Analysis, TextSpan};
-use crate::language::editor::builtins::function_about;
+use crate::language::editor::builtins::{function_about, number_about};
 use crate::language::editor::shipped;
 
 /// Of values of a definition, how many are listed.
@@ -79,7 +79,7 @@ impl Analysis {
             about.extend(self.giver(id, value.written));
         }
         if symbol.kind == NameKind::Axis {
-            about.extend(self.laws(id));
+            about.extend(self.laws(id, entry.span));
         }
         if !entry.is_definition {
             about.push(format!("defined in {}", self.told_place(symbol.name)));
@@ -101,15 +101,22 @@ impl Analysis {
         (written != symbol.name).then(|| format!("given in {}: `{}`", self.told_place(written), self.one_line(written)))
     }
 
-    /// The laws of an axis, wherever it is driven, fixed or coupled.
-    fn laws(&self, axis: SymbolId) -> Vec<String> {
-        let mut laws = Vec::new();
-        for entry in self.index.uses(axis) {
-            if let Some((word, law)) = self.law_at(entry.span) {
-                laws.push(format!("`{word}` in {}: `{law}`", self.told_place(entry.span)));
-            }
-        }
-        laws
+    /// The laws of an axis, wherever it is driven, fixed or coupled: where it is named in a job those of this job, otherwise those of this file,
+    /// where there are any.
+    fn laws(&self, axis: SymbolId, at: Span) -> Vec<String> {
+        let all: Vec<(Span, String)> = self.index.uses(axis).filter_map(|entry| self.law_at(entry.span)).collect();
+        let job = self
+            .items()
+            .map(|id| self.index.symbol(id))
+            .find(|item| item.kind == NameKind::Job && holds(item.extent, at));
+        let in_job = |place: &Span| job.is_some_and(|job| holds(job.extent, *place));
+        let in_file = |place: &Span| place.file == at.file;
+        let told = |is_meant: &dyn Fn(&Span) -> bool| {
+            let meant = all.iter().filter(|(place, _)| is_meant(place));
+            meant.map(|(_, told)| told.clone()).collect::<Vec<String>>()
+        };
+        let narrowest = [told(&in_job), told(&in_file)].into_iter().find(|laws| !laws.is_empty());
+        narrowest.unwrap_or_else(|| told(&|_| true))
     }
 
     /// File and line, the file as seen from the folder above that of the spec.
@@ -120,8 +127,8 @@ impl Analysis {
         format!("{}, line {line}", crate::project::shown_path(path))
     }
 
-    /// The word and the law of the statement that begins with the path of an axis, if one does.
-    fn law_at(&self, axis: Span) -> Option<(&'static str, String)> {
+    /// The place and the law of the statement that begins with paths of axes, one of which this is the end of, if one does.
+    fn law_at(&self, axis: Span) -> Option<(Span, String)> {
         let text = &self.sources.file(axis.file).text;
         let line = text[..axis.start as usize].rfind(['\n', '\r']).map_or(0, |at| at + 1);
         let before = &text[line..axis.start as usize];
@@ -133,8 +140,15 @@ impl Analysis {
         let number = before.matches(',').count();
         let behind = &text[axis.end as usize..];
         let laws = statement_rest(behind)?;
-        laws.get(number).map(|law| (word, law.clone()))
+        let law = laws.get(number)?;
+        let path = before.rsplit([',', ' ', '\t']).next().unwrap_or_default();
+        let path = format!("{path}{}", self.sources.text(axis));
+        Some((axis, format!("`{word} {path}` in {}: `{law}`", self.told_place(axis))))
     }
+}
+
+fn holds(part: Span, place: Span) -> bool {
+    part.file == place.file && part.start <= place.start && place.end <= part.end
 }
 
 /// The values behind the `=` of a statement, apart at their commas.
@@ -190,6 +204,7 @@ fn of_word(word: &str, kind: WordKind) -> Option<(String, String)> {
             return Some((word.to_string(), code.title().to_string()));
         }
         WordKind::Status => "what becomes of points",
+        WordKind::Number => number_about(word)?,
         _ => return None,
     };
     Some((word.to_string(), about.to_string()))

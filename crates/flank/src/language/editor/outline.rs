@@ -1,5 +1,7 @@
 //! The parts of a text: what it defines, what can be folded, its jobs.
 
+use std::collections::HashMap;
+
 use flank_chain_dsl::syntax::{comments, tokens};
 use flank_chain_dsl::{NameKind, SymbolId};
 
@@ -45,15 +47,21 @@ pub struct OutlinedJob {
 impl Analysis {
     /// What the spec itself defines.
     pub fn outline(&self) -> Vec<OutlineItem> {
+        let mut parts: HashMap<SymbolId, Vec<SymbolId>> = HashMap::new();
+        for (symbol, id) in self.index.symbols.iter().zip(0u32..) {
+            let is_part = !matches!(symbol.kind, NameKind::Argument | NameKind::SurfaceParameter);
+            if let Some(owner) = symbol.owner.filter(|_| is_part) {
+                parts.entry(owner).or_default().push(SymbolId(id));
+            }
+        }
         let own = self.items().filter(|id| self.index.symbol(*id).name.file == self.main);
-        own.filter_map(|id| self.outlined(id)).collect()
+        own.filter_map(|id| self.outlined(id, &parts)).collect()
     }
 
-    fn outlined(&self, id: SymbolId) -> Option<OutlineItem> {
+    fn outlined(&self, id: SymbolId, parts: &HashMap<SymbolId, Vec<SymbolId>>) -> Option<OutlineItem> {
         let symbol = self.index.symbol(id);
-        let own = self.index.symbols.iter().zip(0u32..).filter(|(inner, _)| inner.owner == Some(id));
-        let own = own.filter(|(inner, _)| !matches!(inner.kind, NameKind::Argument | NameKind::SurfaceParameter));
-        let inside: Vec<OutlineItem> = own.filter_map(|(_, inner)| self.outlined(SymbolId(inner))).collect();
+        let own = parts.get(&id).into_iter().flatten();
+        let inside: Vec<OutlineItem> = own.filter_map(|inner| self.outlined(*inner, parts)).collect();
         let (span, mut extent) = (self.text_span(symbol.name)?, self.text_span(symbol.extent)?);
         for inner in &inside {
             extent.start = extent.start.min(inner.extent.start);

@@ -1,7 +1,7 @@
 //! A new name for something, everywhere.
 
 use flank_chain_dsl::syntax::{TokenKind, is_reserved, tokens};
-use flank_chain_dsl::{FileId, Symbol, SymbolId, Target, WordKind};
+use flank_chain_dsl::{FileId, NameKind, Symbol, SymbolId, Target, WordKind};
 use thiserror::Error;
 
 use crate::language::editor::analysis::{Analysis, TextSpan};
@@ -68,7 +68,8 @@ impl Analysis {
         };
         let beside = self.index.symbols.iter().zip(0u32..).find(|(symbol, other)| {
             let is_own = self.index.root(SymbolId(*other)) == own;
-            !is_own && self.sources.text(symbol.name) == name && is_beside(symbol.owner)
+            let is_alike = is_apart(symbol.kind) == is_apart(self.kind(own));
+            !is_own && is_alike && self.sources.text(symbol.name) == name && is_beside(symbol.owner)
         });
         match beside {
             Some((symbol, _)) => Err(RenameError::Taken(name.to_string(), self.sources.place(symbol.name).1)),
@@ -119,6 +120,12 @@ impl Analysis {
         // as many steps as there are definitions: a circle is wrong, and ends here
         line.take(self.index.symbols.len()).any(|id| id == other)
     }
+}
+
+/// Frames, words of NC programs and surfaces of tools may be called as an axis or a parameter beside them; whether any name would lead elsewhere
+/// then is seen once it has changed.
+fn is_apart(kind: NameKind) -> Option<NameKind> {
+    Some(kind).filter(|kind| [NameKind::Frame, NameKind::NcWord, NameKind::ToolSurface].contains(kind))
 }
 
 /// Whether names lead to the same thing: definitions are in the same order whatever they are called.

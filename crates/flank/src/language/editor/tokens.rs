@@ -1,5 +1,7 @@
 //! What words are, for their colours, and what formulas amount to, beside them.
 
+use std::collections::BTreeMap;
+
 use flank_chain_dsl::syntax::{TokenKind, tokens};
 use flank_chain_dsl::{FileId, NameKind, Target, WordKind};
 
@@ -51,7 +53,7 @@ impl Analysis {
 
     /// What `let`s and settings amount to that stand in a part of the spec; also plain numbers with `literals`.
     pub fn inlay_values(&self, from: usize, to: usize, literals: bool) -> Vec<InlayValue> {
-        let mut seen: Vec<(u32, Option<String>)> = Vec::new();
+        let mut seen: BTreeMap<usize, Option<String>> = BTreeMap::new();
         let values = self.index.symbols.iter().flat_map(|symbol| self.counting(symbol));
         for value in values.filter(|value| value.written.file == self.main) {
             let end = value.written.end as usize;
@@ -62,18 +64,11 @@ impl Analysis {
                 continue;
             }
             let shown = self.shown(value);
-            match seen.iter_mut().find(|(at, _)| *at == value.written.end) {
-                // what differs from job to job has no one value
-                Some((_, known)) if known.as_ref() != Some(&shown) => *known = None,
-                Some(_) => {}
-                None => seen.push((value.written.end, Some(shown))),
-            }
+            // what differs from job to job has no one value
+            let known = seen.entry(end).or_insert_with(|| Some(shown.clone()));
+            known.take_if(|known| *known != shown);
         }
-        let known = seen.into_iter();
-        let known = known.filter_map(|(at, value)| Some(InlayValue { offset: at as usize, value: value? }));
-        let mut found: Vec<InlayValue> = known.collect();
-        found.sort_by_key(|inlay| inlay.offset);
-        found
+        seen.into_iter().filter_map(|(offset, value)| Some(InlayValue { offset, value: value? })).collect()
     }
 }
 
