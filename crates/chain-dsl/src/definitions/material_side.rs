@@ -5,7 +5,6 @@ use flank_expr::{Expr, Tape};
 
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::Span;
 use crate::model::RangedVariable;
 use crate::values::context::Context;
@@ -103,13 +102,8 @@ pub(crate) fn no_side([point, body]: [Span; 2], unknowns: &[RangedVariable<'_>],
         let message = "this is one side of the surface at some points, and the other side at others";
         (message, "; it may depend on the parameters")
     };
-    let examples = seen.examples();
-    let example = format!("`body towards {}` or its opposite", examples[0]);
-    let help = format!("name a direction that points into the steel everywhere, such as {example}{hint}");
-    let diagnostic = Diagnostic::new(Code::SteelSide, body, message).help(help);
-    // one that depends on the parameters is nobody's but the user's
-    let directions = examples.into_iter().filter(|_| seen.runs_along());
-    directions.fold(diagnostic, |diagnostic, direction| diagnostic.rewriting(Rewriting::Direction(body, direction)))
+    let help = format!("name a direction that points into the steel everywhere, such as {}{hint}", seen.example());
+    Diagnostic::new(Code::SteelSide, body, message).help(help)
 }
 
 /// True if the expressions depend on parameters without values (a definition looked at by itself).

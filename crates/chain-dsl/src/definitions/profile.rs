@@ -352,9 +352,23 @@ fn check_joint<'g>(context: &mut Context<'g>, one: &Segment<'g>, next: &Segment<
         let message = format!("`{}` begins {} from the end of `{}`", next.name, rounded(gap), one.name);
         let help = format!("let it begin at {} instead of {}", point(x0, y0), point(x1, y1));
         let beginning = Rewriting::Vector("from:", next.span, point(x0, y0));
-        let diagnostic = Diagnostic::new(Code::BrokenProfile, next.span, message).help(help).rewriting(beginning);
+        let mut diagnostic = Diagnostic::new(Code::BrokenProfile, next.span, message).help(help).rewriting(beginning);
+        if let Some([x, y]) = known_center(context, next) {
+            let center = point(x + x0 - x1, y + y0 - y1);
+            diagnostic = diagnostic.rewriting(Rewriting::Vector("center:", next.span, center));
+        }
         context.report(diagnostic.note(one.span, "the segment before it"));
     }
+}
+
+/// The centre of an arc.
+fn known_center<'g>(context: &mut Context<'g>, segment: &Segment<'g>) -> Option<[f64; 2]> {
+    let Shape::Arc { center, .. } = &segment.shape else { return None };
+    let [x, y] = center.map(|part| match context.constant(part) {
+        Constant::Known(value) => Some(value),
+        _ => None,
+    });
+    Some([x?, y?])
 }
 
 /// A length to three digits.

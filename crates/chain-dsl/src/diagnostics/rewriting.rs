@@ -22,8 +22,6 @@ pub(crate) enum Rewriting {
     Entries(Span, String),
     /// The vector behind an argument's name in a place becomes another one.
     Vector(&'static str, Span, String),
-    /// A direction becomes another one, also where a word says it.
-    Direction(Span, String),
     /// What is called so goes, with all of its statement and what is said of it above.
     Statement(Span, Span),
     /// The machine or the tool of this name and definition gets further settings.
@@ -75,16 +73,6 @@ impl Rewriting {
                 let length = length_of_vector(&inside[start..])?;
                 let start = span.start + start as u32;
                 Some(writing(Span { start, end: start + length as u32, ..*span }, point.clone()))
-            }
-            Rewriting::Direction(span, vector) => {
-                let is_vector = text(*span).starts_with('[');
-                let is_word = ["inside", "outside"].contains(&text(*span));
-                let written = if is_vector { vector.clone() } else { format!("towards {vector}") };
-                (is_vector || is_word).then(|| Cure {
-                    title: format!("write `body towards {vector}`"),
-                    span: *span,
-                    replacement: written,
-                })
             }
             Rewriting::Statement(name, span) => {
                 let span = whole_statement(whole(*span), *span)?;

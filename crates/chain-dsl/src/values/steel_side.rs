@@ -141,12 +141,10 @@ impl Seen {
         }
     }
 
-    /// A direction along an axis that leaves the surface, `[0, 1, 0]`, and its opposite.
-    pub(crate) fn examples(&self) -> [String; 2] {
+    /// A direction along an axis that leaves the surface: `[0, 1, 0]`.
+    pub(crate) fn example(&self) -> String {
         let (index, sign) = self.normal.unwrap_or((2, -1.0));
-        [sign, -sign].map(|sign| {
-            let parts = (0..3).map(|k| if k == index { sign.to_string() } else { "0".to_string() });
-            format!("[{}]", parts.collect::<Vec<String>>().join(", "))
-        })
+        let parts: Vec<String> = (0..3).map(|k| if k == index { sign.to_string() } else { "0".to_string() }).collect();
+        format!("`body towards [{}]` or its opposite", parts.join(", "))
     }
 }
