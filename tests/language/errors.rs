@@ -55,7 +55,7 @@ fn findings(code: Code, block: &Block) -> (Vec<Diagnostic>, String) {
 fn report(compilation: &mut Compilation<'_>, code: Code) -> String {
     if code == Code::NoJob && !compilation.has_errors() {
         let missing = compilation.take_jobs(None).err();
-        compilation.diagnostics.extend(missing);
+        compilation.diagnostics.extend(missing.into_iter().flatten());
     }
     render(&compilation.diagnostics, &compilation.sources, false)
 }
