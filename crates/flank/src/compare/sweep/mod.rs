@@ -66,7 +66,7 @@ pub fn plan_sweep(request: &SweepRequest, monitor: &dyn Monitor) -> Result<Sweep
     let session = Session::new(request.evaluator, monitor);
     let chunk = {
         let tried = Cases::new(which.clone(), inputs.clone(), (&request.collect, None), session)?;
-        tried.from_texts(&job.name).iter().for_each(|remark| monitor.remark(remark));
+        tried.needs_texts(&job.name).iter().for_each(|remark| monitor.remark(remark));
         let start = Instant::now();
         let count = TRIED.min(values.count());
         for number in 0..count {
@@ -114,7 +114,7 @@ fn kept_plan(folder: &Path, plan: Plan) -> Result<Plan, Failure> {
 /// If there is no study, its texts are not those of its plan, something cannot be written, or the work is cancelled.
 pub fn run_sweep(request: &RunRequest, monitor: &dyn Monitor) -> Result<SweepResult, Failure> {
     let study = OpenStudy::open(&request.study, request.evaluator, monitor)?;
-    study.from_texts().iter().for_each(|remark| monitor.remark(remark));
+    study.needs_texts().iter().for_each(|remark| monitor.remark(remark));
     study.run(request.chunks, &request.again, monitor)
 }
 

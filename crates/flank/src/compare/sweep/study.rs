@@ -58,8 +58,8 @@ impl OpenStudy {
     }
 
     /// Why each case is computed from its text, if so.
-    pub(super) fn from_texts(&self) -> Option<Remark> {
-        self.cases.from_texts(&self.plan.job)
+    pub(super) fn needs_texts(&self) -> Option<Remark> {
+        self.cases.needs_texts(&self.plan.job)
     }
 
     /// Whether its plan and its texts are still those that it was opened with, as far as sizes and times of the files tell.

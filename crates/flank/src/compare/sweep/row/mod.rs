@@ -108,7 +108,7 @@ impl Cases {
     }
 
     /// Why each case is computed from its text, if so.
-    pub(super) fn from_texts(&self, job: &str) -> Option<Remark> {
+    pub(super) fn needs_texts(&self, job: &str) -> Option<Remark> {
         let why = self.compiled.as_ref().err()?;
         let message = format!(
             "each case of `{job}` is compiled from its text, which may take ten times as long as where the job is compiled once: {why}"
