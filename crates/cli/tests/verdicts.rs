@@ -358,3 +358,64 @@ fn a_keep_goes_on_over_the_seam_of_a_turn() {
         assert_eq!(surface["solved"], points, "{surface}");
     }
 }
+
+/// A wobbling plate carries cone rollers round a crown gear: its flank is a curve on a sphere about the centre of nutation, seen from both
+/// sides of the roller, and where that curve turns back there are cusps, found from its curvature by hand: at ±157.3 deg of the shaft on one
+/// side, at ±22.7 deg on the other.
+#[test]
+fn limits_are_those_of_the_branch_that_is_kept() {
+    let folder = folder("limits_kept");
+    for (keep, cusp, side) in [("-170 deg .. -10 deg", 157.3, -1.0), ("10 deg .. 170 deg", 22.7, 1.0)] {
+        let file = written(&folder, "crown.chain", &NUTATION.replace("KEPT", keep));
+        let out = folder.to_str().expect("a plain path");
+        let run = flank(&["solve", &file, "--limits", "--json", "--no-picture", "--out", out]);
+        let table: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let line = &table["lines"][0];
+        assert_eq!((&line["name"], &line["solved"]), (&"flank.singular_line".into(), &line["asked"]));
+        let range = |name: &str| {
+            let all = line["ranges_reached"].as_array().expect("ranges");
+            let of = all.iter().find(|of| of["name"] == name).expect("it is an unknown");
+            (of["low"].as_f64().expect("a number"), of["high"].as_f64().expect("a number"))
+        };
+        let ((low, high), (least, most)) = (range("shaft"), range("a"));
+        assert!((low.abs() - cusp).abs() < 0.06 && (high.abs() - cusp).abs() < 0.06, "{keep}: {low} .. {high}");
+        assert!(side * least > 10.0 && side * most > 10.0, "{keep}: {least} .. {most}");
+    }
+}
+
+const NUTATION: &str = "//! Nutation drive: a wobbling plate carries cone rollers round a crown gear, one tooth more.
+
+machine wobble {
+    param tilt : angle in 0.1 deg .. 30 deg = 5 deg
+    param rollers : count in 3 .. 200 = 20
+    param teeth : count in 3 .. 200 = 21
+    axis shaft : rotary
+    frame bed
+    frame swash in bed = rotate_z(shaft) rotate_y(tilt) rotate_z(-shaft)
+    frame plate in swash = rotate_z(0 deg)
+    frame crown in bed = rotate_z(turn)
+    axis turn : rotary
+    couple turn = shaft / teeth
+}
+
+/// A cone on x, its apex in the centre of nutation.
+tool cone_roller {
+    param half_angle : angle in 0.1 deg .. 30 deg = 3 deg
+    surface side(u: length in 30 mm .. 60 mm, a: angle in -180 deg .. 180 deg) {
+        at = u * [cos(half_angle), sin(half_angle) * cos(a), sin(half_angle) * sin(a)]
+        body towards [0, -cos(a), -sin(a)]
+    }
+}
+
+job crown {
+    machine m = wobble
+    tool r = cone_roller
+    mount r on m.plate
+    motion shaft : angle in -180 deg .. 180 deg
+    drive m.shaft = shaft
+    surface flank in m.crown = envelope(r.side, over: shaft)
+    sample flank { shaft: -170 deg .. 170 deg by 35, u: 30 mm .. 60 mm by 3
+ keep a: KEPT }
+    expect all solved
+}
+";
