@@ -308,7 +308,10 @@ fn what_samples_require_is_tested() {
     let run = tested(&folder, "", &[]);
     let told = text(&run.stdout);
     assert_eq!(run.status.code(), Some(3), "{told}");
-    assert!(told.contains("require far: ") && told.contains(" .. 36 mm") && told.contains("it lies too far out"), "{told}");
+    assert!(
+        told.contains("require far: ") && told.contains(" .. 36 mm") && told.contains("it lies too far out"),
+        "{told}"
+    );
     assert!(told.contains("far is"), "{told}");
 }
 

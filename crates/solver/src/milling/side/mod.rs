@@ -190,7 +190,7 @@ impl SideStrip {
         [0, 1, 2].map(|k| weighted(&values[k * count..][..count], &weights))
     }
 
-    /// The motion with turns, leans and heights, as polynomials that are as near as [`NEAR`], or as near as they come.
+    /// The motion with turns, leans and heights, as polynomials that are near enough to rounding, or as near as they come.
     pub fn way(&self, values: &[f64]) -> PoseSeries {
         let through = |count: usize| PoseSeries::sampled(count, |share| self.pose(share, Self::free(values, share)));
         let found = NODES.iter().map(|count| through(*count));
