@@ -17,6 +17,17 @@ const GEAR: [&str; 7] = [
     "machines/five_axis_table_table",
     "tools/end_mills",
 ];
+const CROWNED: [&str; 9] = [
+    "functions/hobbing",
+    "machines/hobbing_6axis",
+    "machines/hobbing_geared",
+    "machines/hobbing_3axis",
+    "tools/involute",
+    "tools/hob_zi",
+    "hobbing/crowned_gear",
+    "machines/five_axis_table_table",
+    "tools/end_mills",
+];
 const PINION: [&str; 7] = [
     "functions/bevel",
     "machines/cradle",
@@ -142,6 +153,32 @@ fn a_bevel_flank_leaves_what_it_leaves() {
     // a search ends within a millionth of the least, or 0.01 nm
     assert!(one > two && four < two + 1e-4 && four > 0.0, "{one} {two} {four}");
     assert!(largest("0.48 .. 0.52", 2) < 0.5 * two);
+}
+
+/// Flanks that twist: nothing vanishes there, and the search ends all the same, whatever the cutter and however free its axis. A crowned
+/// flank is nearly developable: a cone can do no more for it than a cylinder.
+#[test]
+fn the_search_ends_on_flanks_that_twist() {
+    let out = folder("side_twisted");
+    let strip = |free: usize| format!("side z: -6 mm .. 6 mm by {free}\n along rho: 55 mm .. 59 mm by 9\n");
+    let left_of = |spec: &str| {
+        let side = &json(&written(&out, "milled.chain", spec), &out, &[])["side"];
+        assert_eq!(side["is_settled"], true, "{side}");
+        left(side)[0]
+    };
+    let cone = CYLINDER.replace("half_angle: 0 deg", "half_angle: 5 deg");
+    let crowned =
+        |cutter: &str, free: usize| left_of(&job(&CROWNED, ("crowned_gear", "upper_flank"), cutter, &strip(free)));
+    let [least, other] = [CYLINDER, &cone].map(|cutter| crowned(cutter, 4));
+    // um: a search ends within a millionth, and begins elsewhere for each cutter
+    assert!((least - other).abs() < 1e-3 * least, "{least} {other}");
+    assert!(crowned(&cone, 1) > least * (1.0 - 1e-3));
+    let wide = |free: usize| {
+        let milling = format!("side profilewise: 0.2 .. 0.8 by {free}\n along lengthwise: 0.15 .. 0.85 by 9\n");
+        left_of(&pinion(&CYLINDER.replace("1.5 mm", "1 mm"), &milling))
+    };
+    let [few, many] = [2, 8].map(wide);
+    assert!(many < few, "{many} {few}");
 }
 
 /// The least height at which a line enters a cone, over the positions of a pass; between them by the parabola through three.

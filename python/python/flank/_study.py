@@ -32,7 +32,7 @@ class Study:
 
     `flank.sweep` makes one, `flank.Study(folder)` opens one.
 
-    Raises `InputError` if there is no study, or a program of another version has made it.
+    Raises `InputError` if there is no study. One that a program of another version has made is read; no rows are added to it.
 
     >>> import flank, tempfile
     >>> job = flank.load("specs/bevel/pinion_19x62.chain")
