@@ -383,6 +383,32 @@ fn limits_are_those_of_the_branch_that_is_kept() {
     }
 }
 
+/// A study of one point looks at the tool's other positions for it, as solving all of them does.
+#[test]
+fn a_studied_point_that_the_tool_cuts_away_elsewhere_is_not_solved() {
+    let folder = folder("studied_point");
+    let file = written(&folder, "crown.chain", &NUTATION.replace("KEPT", "10 deg .. 170 deg"));
+    let plain = |path: std::path::PathBuf| path.to_str().expect("a plain path").to_string();
+    let study = |at: &str, name: &str| {
+        let out = plain(folder.join(name));
+        let _ = std::fs::remove_dir_all(&out);
+        let scatter = "r.half_angle=normal(0.0001 deg)";
+        flank(&["sweep", &file, "--scatter", scatter, "--count", "3", "--collect", at, "--out", &out]);
+        text(&flank(&["sweep", "gather", &out]).stdout)
+    };
+    let out = plain(folder.clone());
+    flank(&["solve", &file, "--no-picture", "--out", &out]);
+    let table = std::fs::read_to_string(folder.join("crown.csv")).expect("it is written");
+    let is_elsewhere = |line: &&str| line.contains("in another position of the tool");
+    let cut = table.lines().find(is_elsewhere).expect("the roller cuts some away");
+    let solved = table.lines().find(|line| line.contains(",solved,")).expect("others are there");
+    for (line, verdict) in [(cut, "not all solved,undercut"), (solved, "done,")] {
+        let place: Vec<&str> = line.split(',').skip(1).take(2).collect();
+        let rows = study(&format!("at:flank[{}]", place.join(",")), &format!("study_{}", place.join("_")));
+        assert_eq!(rows.matches(verdict).count(), 3, "{line}: {rows}");
+    }
+}
+
 const NUTATION: &str = "//! Nutation drive: a wobbling plate carries cone rollers round a crown gear, one tooth more.
 
 machine wobble {
