@@ -54,6 +54,66 @@ fn axes_of_fitted_settings_do_not_jump() {
     }
 }
 
+/// A wheel on a rocking arm grinds a cam; carried over to slides whose spindle is parallel to the axis of the cam. Spindle and work can turn
+/// together without moving the tool, so the spindle stands still, also where the tool shifts along itself by an axis of its own.
+#[test]
+fn a_spindle_that_is_parallel_to_the_axis_of_the_work_stands_still() {
+    const CAM: &str = "machine cam_grinder {
+    axis C : rotary
+    axis A : rotary
+    frame bed
+    frame work in bed = rotate_z(C)
+    frame rocker in bed = translate_x(120 mm) rotate_z(180 deg - A)
+    frame cutter in rocker = translate_x(100 mm)
+}
+tool wheel {
+    surface rim(a: angle in -180 deg .. 180 deg, v: length in -10 mm .. 10 mm) {
+        at = [40 mm * cos(a), 40 mm * sin(a), v]
+        body inside
+    }
+}
+job cam {
+    machine m = cam_grinder
+    tool w = wheel
+    mount w on m.cutter
+    motion turn : angle in -180 deg .. 180 deg
+    drive m.C = turn
+    drive m.A = 38 deg + 4 deg * (1 - cos(2 * turn))
+    surface cam in m.work = envelope(w.rim, over: turn)
+    sample cam {
+        turn: -170 deg .. 170 deg by 35, v: -5 mm .. 5 mm by 3
+        keep a: 60 deg .. 300 deg
+    }
+}
+";
+    let out = folder("postures-parallel");
+    let job = written(&out, "cam.chain", CAM);
+    let onto = |name: &str, axes: &str, more: &str| {
+        let machine = format!(
+            "machine {name} {{\n    axis X : linear\n    axis Y : linear\n    axis C : rotary\n{axes}    frame bed\n    frame cutter in bed = \
+             translate(X, Y, 0 mm){more}\n    frame work in bed = rotate_z(C)\n}}\n"
+        );
+        let machine = written(&out, &format!("{name}.chain"), &machine);
+        carried(&[&job, "--to", &machine, "--positions", "21"], &out)
+    };
+    let bare = onto("bare", "", "");
+    let spindle = onto("spindle", "    axis S : rotary\n", " rotate_z(S)");
+    let quill = onto("quill", "    axis Z : linear\n    axis S : rotary\n", " translate_z(Z) rotate_z(S)");
+    assert!(bare["resting"].is_null() && spindle["resting"]["name"] == "S" && quill["resting"]["name"] == "S");
+    for (k, position) in bare["positions"].as_array().expect("positions").iter().enumerate() {
+        let axis = |table: &Value, axis: usize| table["positions"][k]["axes"][axis].as_f64().expect("a number");
+        for axes in 0..3 {
+            let [own, others @ ..] = [&bare, &spindle, &quill].map(|table| axis(table, axes));
+            assert!(others.iter().all(|other| (other - own).abs() < 1e-9), "{position}: {others:?}");
+        }
+        // as far as the triangle of pivot, arm and wheel has it
+        let turn = position["motions"][0].as_f64().expect("a number").to_radians();
+        let rocked = (38.0 + 4.0 * (1.0 - (2.0 * turn).cos())).to_radians();
+        let apart = (120f64.powi(2) + 100f64.powi(2) - 2.0 * 120.0 * 100.0 * rocked.cos()).sqrt();
+        assert!((axis(&bare, 0).hypot(axis(&bare, 1)) - apart).abs() < 1e-9, "{position}");
+    }
+}
+
 /// A trunnion that turns to one side only just not far enough, a table that ends a turn away, a spindle that hardly turns: each
 /// machine reaches all of the motion some other way than the first that comes to mind.
 #[test]

@@ -88,7 +88,7 @@ pub use convert::milling::setup::{CutterSetting, MillSetup};
 pub use convert::milling::side::SideLeft;
 pub use convert::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, ConvertResult, FittedPosition,
-    FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, ToolSymmetry,
+    FoundSetting, FoundSettings, MissingMotion, NcDeviation, Remainders, RestingAxis, ToolSymmetry,
 };
 pub use draw::plot;
 pub use draw::result::{PlotResult, WrittenPicture};

@@ -284,6 +284,13 @@ impl<'t, 'g> Plan<'t, 'g> {
     }
 }
 
+/// Postures at all positions, and an axis that stands still for them.
+struct Resting<'t, 'g> {
+    problem: PoseProblem<'g>,
+    line: Vec<Posture>,
+    axis: Option<(&'t Axis<'g>, f64)>,
+}
+
 impl<'t, 'g> Target<'t, 'g> {
     fn motions(&self) -> Vec<Expr<'g>> {
         self.source.motions.iter().map(|motion| motion.variable).collect()
@@ -306,7 +313,7 @@ impl<'t, 'g> Target<'t, 'g> {
         if !found.1.iter().all(is_met) || found.1.iter().all(is_good) {
             return Ok(found);
         }
-        let unseen = self.unseen_motions();
+        let unseen = self.unseen_motions(|axis| axis.travel.is_some());
         if unseen.iter().all(Option::is_none) {
             return Ok(found);
         }
@@ -324,12 +331,37 @@ impl<'t, 'g> Target<'t, 'g> {
         Ok(found)
     }
 
-    /// Of each axis that ends what it does to the tool, if that leaves the tool unchanged, and how much of it per mm or radian.
-    fn unseen_motions(&self) -> Vec<Option<(Screw, f64)>> {
+    /// Postures at all positions, with the axes that stand still for them: where none are found because an axis that only moves the tool
+    /// along itself can do what another one does, as a spindle that is parallel to the axis of the work, it stands still.
+    fn resting_postures(&mut self, positions: &[Vec<f64>]) -> Result<Resting<'t, 'g>, String> {
+        let (problem, line) = self.postures(positions)?;
+        if line.iter().all(is_met) || self.axes.len() < 2 {
+            return Ok(Resting { problem, line, axis: None });
+        }
+        let unseen = self.unseen_motions(|_| true);
+        for k in (0..unseen.len()).filter(|k| unseen[*k].is_some()) {
+            let chain = self.chain.clone();
+            let (axis, own) = (self.axes.remove(k), self.free.remove(k));
+            let rests = axis.travel.map_or(0.0, |travel| 0f64.clamp(travel.low, travel.high));
+            self.chain = chain.substituted(&[(axis.variable, axis.variable.graph().constant(rests))]);
+            let (problem, line) = self.postures(positions)?;
+            if line.iter().all(is_met) {
+                return Ok(Resting { problem, line, axis: Some((own, rests)) });
+            }
+            self.chain = chain;
+            self.axes.insert(k, axis);
+            self.free.insert(k, own);
+        }
+        Ok(Resting { problem, line, axis: None })
+    }
+
+    /// Of each axis that counts what it does to the tool, if that leaves the tool unchanged, and how much of it per mm or radian.
+    fn unseen_motions(&self, counts: impl Fn(&TargetAxis<'g>) -> bool) -> Vec<Option<(Screw, f64)>> {
         let settled = self.chain.substituted(&self.bindings);
         let axes: Vec<Expr<'g>> = self.axes.iter().map(|axis| axis.variable).collect();
         let of = |axis: &TargetAxis<'g>| {
-            axis.travel.and_then(|_| unseen_motion(&settled, axis.variable, &axes, &self.source.symmetries).ok()?)
+            let is_asked = counts(axis).then_some(axis.variable);
+            is_asked.and_then(|axis| unseen_motion(&settled, axis, &axes, &self.source.symmetries).ok()?)
         };
         self.axes.iter().map(of).collect()
     }
@@ -389,6 +421,8 @@ pub(crate) struct Conversion<'j, 'g> {
     pub(crate) machine: &'j Machine<'g>,
     /// The axes that move the tool against the work.
     pub(crate) free: Vec<&'j Axis<'g>>,
+    /// One that only moves the tool along itself and is not needed, and where it stands, mm or radians.
+    pub(crate) resting: Option<(&'j Axis<'g>, f64)>,
     /// From work to tool on the machine, with its parameters as symbols.
     chain: Chain<'g>,
     bindings: Vec<(Expr<'g>, Expr<'g>)>,
@@ -442,9 +476,9 @@ impl<'j, 'g> Conversion<'j, 'g> {
         session: Session<'_>,
     ) -> Result<Conversion<'j, 'g>, Failure> {
         let _working = session.begin(format!("following the tool on {}", target.machine.name))?;
-        let (problem, line) = target.postures(&positions)?;
+        let Resting { problem, line, axis: resting } = target.resting_postures(&positions)?;
         let Target { source, machine, free, chain, bindings, .. } = target;
-        Ok(Conversion { source, machine, free, chain, bindings, problem, positions, line })
+        Ok(Conversion { source, machine, free, resting, chain, bindings, problem, positions, line })
     }
 
     /// The axes in closed form; with the parameters as symbols, or as numbers.

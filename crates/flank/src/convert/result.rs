@@ -35,6 +35,8 @@ pub struct AxisMotion {
     pub made_at: Option<Vec<f64>>,
     /// That move the tool against the work.
     pub axes: Vec<AxisExtent>,
+    /// An axis that only moves the tool along itself and is not needed; null if there is none.
+    pub resting: Option<RestingAxis>,
     /// Motions that leave the tool unchanged, in its frame.
     pub tool_symmetries: Vec<ToolSymmetry>,
     /// In the order in which they are passed.
@@ -89,6 +91,17 @@ pub struct AxisExtent {
     pub high: Option<f64>,
     /// What the axis can do, in its unit; null where it is not limited.
     pub travel: Option<Travel>,
+}
+
+/// An axis that stands still.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct RestingAxis {
+    /// Its name.
+    pub name: String,
+    /// Of its position.
+    pub unit: UnitSymbol,
+    /// Where.
+    pub at: f64,
 }
 
 /// A motion that leaves the tool unchanged.

@@ -9,7 +9,7 @@ use super::Conversion;
 use super::rates::Rates;
 use super::result::{
     AxisExtent, AxisMotion, AxisPolynomials, AxisPosition, AxisRates, CarriedJob, MissingMotion, NcDeviation,
-    Remainders, ToolSymmetry,
+    Remainders, RestingAxis, ToolSymmetry,
 };
 use super::series::Series;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
@@ -35,6 +35,7 @@ pub(crate) struct Table {
     pub(super) words: Vec<NcWord>,
     pub(super) positions: Vec<Vec<f64>>,
     pub(super) line: Vec<Posture>,
+    resting: Option<RestingAxis>,
     symmetries: Vec<Screw>,
     /// Where all sampled points are made, if nothing moves between them.
     still: Option<Vec<f64>>,
@@ -72,6 +73,11 @@ impl Table {
             words: free.iter().map(|axis| axis.word.clone()).collect(),
             positions: carried.positions.clone(),
             line: carried.line.clone(),
+            resting: carried.resting.map(|(axis, at)| RestingAxis {
+                name: axis.name.clone(),
+                unit: UnitSymbol::of_dimension(axis.dimension),
+                at: units::shown(axis.dimension, at),
+            }),
             symmetries: source.symmetries.clone(),
             still: source.still.clone(),
             series,
@@ -108,6 +114,7 @@ impl Table {
             made_at: self.still.as_ref().map(shown),
             motions: self.motions.iter().map(named).collect(),
             axes: self.axes.iter().enumerate().map(|(k, axis)| self.extent(k, axis)).collect(),
+            resting: self.resting.clone(),
             tool_symmetries: symmetries
                 .map(|screw| ToolSymmetry { angular: screw.angular, linear: screw.linear })
                 .collect(),

@@ -4,7 +4,7 @@ use std::fmt::{self, Formatter};
 
 use flank_export::fixed;
 
-use super::result::{AxisExtent, AxisMotion, AxisPolynomials, AxisRates, NcDeviation, ToolSymmetry};
+use super::result::{AxisExtent, AxisMotion, AxisPolynomials, AxisRates, NcDeviation, RestingAxis, ToolSymmetry};
 use crate::project::columns::aligned;
 use crate::project::quantity::{NamedUnit, Travel, UnitSymbol};
 use crate::project::units;
@@ -27,6 +27,9 @@ impl fmt::Display for AxisMotion {
         if !rows.is_empty() {
             let head = ["axis", "from", "to", "travel"].map(String::from);
             write!(f, "\n{}", aligned(&[vec![head], rows].concat(), "<>>>"))?;
+        }
+        if let Some(RestingAxis { name, unit, at }) = &self.resting {
+            writeln!(f, "{name} stands still at {}: it only moves the tool along itself", with_unit(*at, 4, *unit))?;
         }
         if let Some(polynomials) = &self.polynomials {
             self.write_polynomials(polynomials, f)?;
