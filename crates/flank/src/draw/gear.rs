@@ -11,7 +11,11 @@ use crate::project::failure::Failure;
 use crate::solve::body::shape::Shape;
 
 pub(super) fn draw(subject: &Subject<'_, '_>, options: &PictureOptions) -> Result<Drawing, Unfit> {
-    let solid = solid(subject)?;
+    of_solid(subject, solid(subject)?, options)
+}
+
+/// One of the gears of a job.
+pub(crate) fn of_solid(subject: &Subject<'_, '_>, solid: &Solid, options: &PictureOptions) -> Result<Drawing, Unfit> {
     let shape = Shape::of_solid(subject.job, solid, &subject.solved, subject.session).map_err(told)?;
     let teeth = shape.some();
     let drawing = GearDrawing {

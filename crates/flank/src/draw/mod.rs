@@ -2,7 +2,7 @@
 
 mod comparison;
 pub(crate) mod contacts;
-mod gear;
+pub(crate) mod gear;
 mod machine;
 mod maps;
 pub(crate) mod millings;

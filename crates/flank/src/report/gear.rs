@@ -38,7 +38,14 @@ pub(super) fn gears<'j>(subject: &Subject<'j, '_>) -> Result<Vec<Gear<'j>>, Fail
 
 /// Nothing of a job without gears and involutes.
 pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
-    let mut blocks: Vec<Block> = findings.gears.iter().flat_map(of_gear).collect();
+    let mut blocks: Vec<Block> = Vec::new();
+    for (number, gear) in findings.gears.iter().enumerate() {
+        let [heading, measured @ ..] = &of_gear(gear)[..] else { continue };
+        blocks.push(heading.clone());
+        // the first one opens the report
+        blocks.extend((number > 0).then(|| pictures::gear(findings, gear.solid)).flatten());
+        blocks.extend_from_slice(measured);
+    }
     if !findings.traces.is_empty() {
         blocks.push(evaluation(&findings.traces));
         blocks.extend(pictures::figure(findings, PlotKind::Traces));

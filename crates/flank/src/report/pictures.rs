@@ -1,5 +1,6 @@
 //! The pictures of a report.
 
+use flank_chain_dsl::Solid;
 use flank_draw::{Block, Figure, PictureOptions, ReportSection};
 
 use super::Findings;
@@ -25,6 +26,14 @@ pub(super) fn figure(findings: &Findings<'_, '_>, what: PlotKind) -> Option<Bloc
     }
     let drawing = draw::draw(&findings.subject, what, &[], PictureOptions::default()).ok()?;
     Some(block_of_drawing(findings, what, &drawing))
+}
+
+/// One of the gears of the job.
+pub(super) fn gear(findings: &Findings<'_, '_>, solid: &Solid) -> Option<Block> {
+    let drawing = draw::gear::of_solid(&findings.subject, solid, &PictureOptions::default()).ok()?;
+    let name = format!("{}.report.gear.{}", findings.job.name, solid.name);
+    let caption = format!("gear: {}", drawing.shows);
+    Some(Block::Figure(Figure { name, picture: drawing.picture, caption }))
 }
 
 fn block_of_drawing(findings: &Findings<'_, '_>, what: PlotKind, drawing: &Drawing) -> Block {
