@@ -99,7 +99,7 @@ pub use exchange::templates::{
     FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
 pub use flank_chain_dsl::syntax::{Vocabulary, is_reserved, vocabulary};
-pub use flank_chain_dsl::{Buffers, Code, Disk, Files, NameKind, ValueSource, WordKind};
+pub use flank_chain_dsl::{Buffers, Code, Disk, Files, FolderEntry, NameKind, ValueSource, WordKind};
 pub use language::check::{CheckResult, Checked, check, check_with_names};
 pub use language::derive::derive;
 pub use language::derive::result::{
