@@ -106,7 +106,7 @@ pub use language::derive::result::{
     CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
 };
 pub use language::editor::analysis::{Analysis, LocatedFinding, TextCure, TextEdit, TextSpan, analyse};
-pub use language::editor::completion::{Completion, CompletionKind};
+pub use language::editor::completion::{Completion, CompletionKind, PathCompletions};
 pub use language::editor::hover::Hover;
 pub use language::editor::names::{IndexedName, IndexedValue};
 pub use language::editor::navigation::Reference;
