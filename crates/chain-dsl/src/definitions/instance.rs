@@ -416,6 +416,7 @@ fn starting_value(param: &Param) -> Option<String> {
         [("angle", 1)] => " deg",
         [("number" | "count", 1)] => "",
         [("length", 1), ("angle", -1)] => " mm/rev",
+        [("angle", 1), ("length", -1)] => " deg/mm",
         _ => return None,
     };
     let low = param.range.as_ref().and_then(|range| match &range.low.kind {

@@ -14,7 +14,14 @@ use crate::values::context::{Context, quoted};
 use crate::values::dimension::Dimension;
 use crate::values::value::Constant;
 
-use super::{Builder, Driven, are_even};
+use super::{Builder, are_even};
+
+/// An axis with a law that may be wrong (and that is reported), where it is named, and what is said of it alone.
+pub(super) struct Driven<'g> {
+    pub(super) law: Option<Expr<'g>>,
+    pub(super) place: Span,
+    pub(super) whole: Option<Span>,
+}
 
 impl<'g> Builder<'_, 'g> {
     pub(super) fn drive(&mut self, context: &mut Context<'g>, drive: &ast::Drive) {

@@ -16,6 +16,10 @@ pub(super) fn choosing(diagnostic: Diagnostic, span: Span, choices: &[&str]) -> 
 }
 
 impl<'g> Builder<'_, 'g> {
+    pub(super) fn instance_names(&self) -> Vec<String> {
+        self.machines.iter().map(|(name, ..)| name.node.clone()).collect()
+    }
+
     /// A machine of the job and the name behind the dot.
     pub(super) fn machine_member<'p>(
         &self,

@@ -36,6 +36,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
+use crate::job::axes::Driven;
 use crate::job::decisive::Decisive;
 use crate::job::sampled::SampledPoints;
 use crate::limits;
@@ -65,13 +66,6 @@ struct Original<'b, 'g> {
 
 /// A frame of a machine of the job.
 type FrameRef = (usize, usize);
-
-/// An axis with a law that may be wrong (and that is reported), where it is named, and what is said of it alone.
-struct Driven<'g> {
-    law: Option<Expr<'g>>,
-    place: Span,
-    whole: Option<Span>,
-}
 
 struct Builder<'a, 'g> {
     definitions: &'a Definitions<'a>,
@@ -529,10 +523,6 @@ impl<'g> Builder<'_, 'g> {
         for (inner, value) in scope {
             self.scope.insert(format!("{}.{inner}", name.node), value.clone());
         }
-    }
-
-    fn instance_names(&self) -> Vec<String> {
-        self.machines.iter().map(|(name, ..)| name.node.clone()).collect()
     }
 
     /// True for a name that stands for something that could not be built (which has been reported).
