@@ -238,11 +238,7 @@ fn with_points<'g>(
     for statement in &job.statements {
         builder.declare(context, statement, &mut binder);
     }
-    let params = job.statements.iter().filter_map(|statement| match statement {
-        JobStatement::Param(param) => Some(param),
-        _ => None,
-    });
-    binder.finish(context, &params.collect::<Vec<_>>());
+    binder.finish(context, &job.params());
     builder.parameters = binder.parameters;
     for statement in &job.statements {
         match statement {
