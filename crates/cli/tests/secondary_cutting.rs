@@ -11,6 +11,7 @@ use support::{flank, folder, text, written};
 struct Row {
     surface: String,
     position: [f64; 2],
+    z: f64,
     status: String,
     reason: String,
 }
@@ -20,10 +21,12 @@ fn rows(table: &Path) -> Vec<Row> {
     let mut lines = csv.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
     let titles = lines.next().expect("titles");
     let column = |name: &str| titles.iter().position(|title| *title == name).expect(name);
-    let [x, y, status] = ["x", "y", "status"].map(column);
+    let [x, y, z, status] = ["x", "y", "z", "status"].map(column);
+    let number = |row: &[&str], at: usize| row[at].parse().unwrap_or(f64::NAN);
     let row = |row: Vec<&str>| Row {
         surface: row[0].to_string(),
-        position: [x, y].map(|at| row[at].parse().unwrap_or(f64::NAN)),
+        position: [x, y].map(|at| number(&row, at)),
+        z: number(&row, z),
         status: row[status].to_string(),
         reason: row.get(status + 1).unwrap_or(&"").to_string(),
     };
@@ -231,6 +234,117 @@ fn a_rack_cuts_flanks_by_its_rounding_and_fillets_by_its_flank() {
         }
         assert_eq!(cut > 0, teeth < 13, "{teeth} teeth: {cut}");
     }
+}
+
+/// Two straight sides of a comb's tooth meet at a kink. The point that the kink generates on one of them enters the steel of the other
+/// right there, at its very end.
+#[test]
+fn a_kink_cuts_the_points_of_its_own_corner() {
+    const CORNERS: [[f64; 2]; 3] = [[-5.0, 2.0], [2.0, 4.5], [5.0, 5.8]];
+    const RADIUS: f64 = 72.5;
+    let corner = |k: usize| format!("[{} mm, {} mm]", CORNERS[k][0], CORNERS[k][1]);
+    let spec = format!(
+        "machine planer {{
+    param raise : length = 1.5 mm
+    axis C : rotary
+    axis Y : linear
+    frame bed
+    frame table in bed = rotate_z(C)
+    frame comb in bed = translate({RADIUS} mm + raise, Y, 0 mm)
+    couple Y = {RADIUS} mm * C
+}}
+tool comb {{
+    profile side {{
+        flank = line(from: {}, to: {})
+        relief = line(from: {}, to: {})
+    }}
+    surface face(s: along side, w: length in -20 mm .. 20 mm) {{
+        let p = side(s)
+        at = [p[0], p[1], w]
+        body towards [0, -1, 0]
+    }}
+}}
+job planed {{
+    machine m = planer
+    tool c = comb
+    mount c on m.comb
+    motion roll : angle in -50 deg .. 50 deg
+    drive m.C = roll
+    surface flank in m.table = envelope(c.face, over: roll)
+    sample flank.flank {{ s: c.side.flank.from .. c.side.flank.to by 41, z: -15 mm .. 15 mm by 3 }}
+    sample flank.relief {{ s: c.side.relief.from .. c.side.relief.to by 41, z: -15 mm .. 15 mm by 3 }}
+}}
+",
+        corner(0),
+        corner(1),
+        corner(1),
+        corner(2)
+    );
+    let depth = |[x, y]: [f64; 2]| {
+        let into = |roll: f64| {
+            let (sine, cosine) = roll.sin_cos();
+            let at = [cosine * x - sine * y - RADIUS - 1.5, sine * x + cosine * y - RADIUS * roll];
+            let of = |[[a, b], [c, d]]: [[f64; 2]; 2]| b + (at[0] - a) / (c - a) * (d - b) - at[1];
+            let side = if at[0] < CORNERS[1][0] { [CORNERS[0], CORNERS[1]] } else { [CORNERS[1], CORNERS[2]] };
+            if (CORNERS[0][0]..=CORNERS[2][0]).contains(&at[0]) { of(side) } else { -1.0 }
+        };
+        deepest(into, [-50.0, 50.0].map(f64::to_radians))
+    };
+    let at = folder("secondary_kink");
+    let spec = written(&at, "planed.chain", &spec);
+    let rows = solved("secondary_kink_points", &spec, "planed", &[]);
+    rows.iter().for_each(|row| held_against(row, depth(row.position)));
+    let is_corner = |row: &&Row| depth(row.position) > 1e-4 && row.reason.contains("in another position");
+    let cut = rows.iter().filter(is_corner).count();
+    assert!(cut >= 6, "{cut} of {}", rows.len());
+}
+
+/// A cone that wobbles about its apex: all points of a ray share one fate, also where the ray leaves the cone's ends. Their ways go
+/// through the steel's surface at the very end, and lie beyond it before and after.
+#[test]
+fn the_ends_of_a_cone_cut_like_its_middle() {
+    const SPEC: &str = "machine wobble {
+    axis shaft : rotary
+    axis turn : rotary
+    frame bed
+    frame swash in bed = rotate_z(shaft) rotate_y(5 deg) rotate_z(-shaft)
+    frame crown in bed = rotate_z(turn)
+    couple turn = shaft / 21
+}
+tool cone_roller {
+    surface side(u: length in 30 mm .. 60 mm, a: angle in -180 deg .. 180 deg) {
+        at = u * [cos(3 deg), sin(3 deg) * cos(a), sin(3 deg) * sin(a)]
+        body towards [0, -cos(a), -sin(a)]
+    }
+}
+job crown {
+    machine m = wobble
+    tool r = cone_roller
+    mount r on m.swash
+    motion shaft : angle in -180 deg .. 180 deg
+    drive m.shaft = shaft
+    surface flank in m.crown = envelope(r.side, over: shaft)
+    sample flank { shaft: -170 deg .. 170 deg by 35, u: 30 mm .. 60 mm by 3 }
+}
+";
+    let depth = |row: &Row| {
+        let [x, y, z] = [row.position[0], row.position[1], row.z];
+        let turned = |[a, b]: [f64; 2], by: f64| [by.cos() * a - by.sin() * b, by.sin() * a + by.cos() * b];
+        let into = |shaft: f64| {
+            let [x, y] = turned([x, y], shaft / 21.0 - shaft);
+            let [z, x] = turned([z, x], -5f64.to_radians());
+            let [x, y] = turned([x, y], shaft);
+            3f64.to_radians() - y.hypot(z).atan2(x)
+        };
+        x.hypot(y).hypot(z) * deepest(into, [-180.0, 180.0].map(f64::to_radians))
+    };
+    let at = folder("secondary_cone");
+    let spec = written(&at, "crown.chain", SPEC);
+    let rows = solved("secondary_cone_points", &spec, "crown", &[]);
+    let positioned: Vec<&Row> = rows.iter().filter(|row| row.z.is_finite()).collect();
+    positioned.iter().for_each(|row| held_against(row, depth(row)));
+    let cut = positioned.iter().filter(|row| row.reason.contains("in another position")).count();
+    assert!(positioned.len() >= 90 && cut >= 6, "{cut} of {}", positioned.len());
 }
 
 /// The worm of a wheel with 50 teeth meshes over eight whole turns. Places whole turns apart have the same velocity and lie beside

@@ -140,7 +140,9 @@ fn snapshots_are_accepted_and_differ_in_words() {
     let folder = folder("test_snapshot");
     written(&folder, "gear.chain", &gear());
     let run = tested(&folder, "", &["--accept"]);
-    assert_eq!((run.status.code(), text(&run.stdout).contains("wrote ./gear.snapshot")), (Some(0), true));
+    assert_eq!((run.status.code(), text(&run.stderr).contains("wrote ./gear.snapshot")), (Some(0), true));
+    let told = text(&run.stdout);
+    assert!(told.contains("accepted in ./gear.snapshot:") && told.contains("all hold"), "{told}");
     assert_eq!(tested(&folder, "", &[]).status.code(), Some(0));
 
     written(&folder, "gear.chain", &gear().replace("angle = 20 deg", "angle = 20.01 deg"));
@@ -148,6 +150,7 @@ fn snapshots_are_accepted_and_differ_in_words() {
     let told = text(&run.stdout);
     assert_eq!(run.status.code(), Some(3), "{told}");
     assert!(told.contains("first_gear.flank_plus moved along its normal by at most"), "{told}");
+    assert!(told.contains(" at rho = ") && told.contains("all hold") == told.contains("4 expectations: all"), "{told}");
     assert!(told.contains("pressure angle") && told.contains("explained best by r.pressure_angle"), "{told}");
     assert!(folder.join("build/gear.moved.svg").exists(), "{}", text(&run.stderr));
 
@@ -161,7 +164,17 @@ fn snapshots_are_accepted_and_differ_in_words() {
         let run = tested(&folder, "", &[]);
         let told = text(&run.stdout);
         assert!(run.status.code() == Some(3) && told.contains(says) && !told.contains("evaluations"), "{told}");
+        // nothing moved, and no setting explains it
+        assert!(!told.contains("explained"), "{told}");
     }
+
+    // what became of points
+    let less = gear().replacen("param teeth : count = 20", "param teeth : count = 9", 1);
+    assert_ne!(less, gear());
+    written(&folder, "gear.chain", &less);
+    let run = tested(&folder, "", &[]);
+    let told = text(&run.stdout);
+    assert!(told.contains(" points no longer solved, but ") && told.contains(", the first at rho = "), "{told}");
 
     // nothing is accepted where a server runs it, and nobody is asked where nobody sits
     for arguments in [["--accept"], ["--review"]] {
@@ -213,6 +226,60 @@ fn a_saved_file_is_tested_again() {
     let is_second = until("2 of 4 expectations failed");
     running.kill().and_then(|()| running.wait()).expect("it is ended");
     assert!(is_first && is_second);
+}
+
+/// A file that was away for a moment, as when an editor or a version control system puts another one in its place, still touches those that
+/// use it.
+#[test]
+fn a_used_file_that_was_away_is_watched_again() {
+    let folder = folder("test_away");
+    let (machine, job) =
+        gear().split_once("job first_gear").map(|(a, b)| (a.to_string(), format!("job first_gear{b}"))).unwrap();
+    written(&folder, "parts.chain", &machine);
+    written(&folder, "gear.chain", &format!("use \"parts.chain\"\n\n{job}"));
+    let out = std::fs::File::create(folder.join("out.txt")).expect("a file");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_flank"));
+    command.args(["test", "gear.chain", "--watch"]).current_dir(&folder).env("CI", "").stdout(out);
+    let mut running = command.spawn().expect("the binary runs");
+    let start = Instant::now();
+    let times = |what: &str, count: usize| {
+        while start.elapsed() < Duration::from_secs(120) {
+            let told = std::fs::read_to_string(folder.join("out.txt")).unwrap_or_default();
+            if told.matches(what).count() >= count {
+                return true;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        false
+    };
+    let is_first = times("4 expectations hold", 1);
+    std::fs::rename(folder.join("parts.chain"), folder.join("parts.away")).expect("it is there");
+    let is_missed = times(" in the text", 1);
+    std::fs::rename(folder.join("parts.away"), folder.join("parts.chain")).expect("it is there");
+    let is_back = times("4 expectations hold", 2);
+    // the time of a file may have steps of some milliseconds
+    std::thread::sleep(Duration::from_millis(500));
+    written(&folder, "parts.chain", &machine);
+    let is_touched = times("4 expectations hold", 3);
+    running.kill().and_then(|()| running.wait()).expect("it is ended");
+    assert!(is_first && is_missed && is_back && is_touched, "{is_first} {is_missed} {is_back} {is_touched}");
+}
+
+/// One spec under two names is one spec, and what links lead to is tested.
+#[cfg(unix)]
+#[test]
+fn a_spec_is_tested_once_under_all_its_names() {
+    let folder = folder("test_names");
+    written(&folder, "gear.chain", &gear());
+    let run = tested(&folder, "", &["gear.chain", ".", "./gear.chain"]);
+    assert!(text(&run.stdout).contains("1 spec, 4 expectations: all hold"), "{}", text(&run.stdout));
+    std::fs::create_dir(folder.join("linked")).expect("a folder");
+    std::os::unix::fs::symlink("../gear.chain", folder.join("linked/other.chain")).expect("a link");
+    let run = tested(&folder, "", &["linked"]);
+    assert!(text(&run.stdout).contains("linked/other.chain: 4 expectations hold"), "{}", text(&run.stdout));
+    std::os::unix::fs::symlink("nowhere.chain", folder.join("linked/lost.chain")).expect("a link");
+    let run = tested(&folder, "", &["linked"]);
+    assert!(run.status.code() == Some(3) && text(&run.stdout).contains("linked/lost.chain"), "{}", text(&run.stdout));
 }
 
 /// The job of the library and what it is expected to be like go together; what is meant for its own values stays behind.

@@ -1,11 +1,13 @@
 //! What a surface may be made from: surfaces of tools and earlier surfaces of the job, whole or piece by piece.
 
+use std::collections::HashMap;
+
 use crate::definitions::tool::BuiltTool;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::{RangedVariable, ToolShape};
-use crate::syntax::ast;
+use crate::syntax::ast::{self, JobStatement};
 use crate::values::context::{Context, quoted};
 
 use super::choices::choosing;
@@ -22,6 +24,23 @@ pub(super) struct Available<'g> {
     pub(super) frame: FrameRef,
     /// Where it is asked for.
     pub(super) named: Span,
+}
+
+/// The name of what has a value, or values of its own, for the statements below it.
+pub(super) fn name_of_value(statement: &JobStatement) -> Option<&Name> {
+    match statement {
+        JobStatement::Param(param) => Some(&param.name),
+        JobStatement::Let(binding) => Some(&binding.name),
+        JobStatement::Machine(instance) | JobStatement::Tool(instance) => Some(&instance.name),
+        JobStatement::Motion(motion) | JobStatement::Unknown(motion) => Some(&motion.name),
+        _ => None,
+    }
+}
+
+/// All of them in a job, and where they stand.
+pub(super) fn valued(job: &ast::Job) -> HashMap<String, Span> {
+    let names = job.statements.iter().filter_map(name_of_value);
+    names.map(|name| (name.node.clone(), name.span)).collect()
 }
 
 /// Whether a surface is the one with a name, or a piece of it.
@@ -43,6 +62,13 @@ pub(super) fn which_piece(context: &mut Context<'_>, name: &Name, pieces: &[&str
 }
 
 impl<'g> Builder<'_, 'g> {
+    /// True for a name that stands for something that could not be built (which has been reported).
+    pub(super) fn is_broken_machine(&self, name: &Name) -> bool {
+        !self.scope.contains_key(&name.node)
+            && !self.tools.iter().any(|(tool, ..)| tool.node == name.node)
+            && !self.surfaces.iter().any(|(surface, _)| is_of(&surface.name, &name.node))
+    }
+
     /// The names of the pieces of a surface of the job; none if it is one piece.
     pub(super) fn pieces_of(&self, name: &str) -> Vec<&str> {
         let split = self.surfaces.iter().filter_map(|(surface, _)| surface.name.split_once('.'));

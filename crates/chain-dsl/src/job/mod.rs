@@ -235,9 +235,15 @@ fn with_points<'g>(
     }
     builder.name_mills(job);
     let mut binder = Binder::new(Source::Job, definitions.overrides);
+    context.later = available::valued(job);
+    context.unmade.clear();
     for statement in &job.statements {
+        if let Some(name) = available::name_of_value(statement) {
+            context.later.remove(&name.node);
+        }
         builder.declare(context, statement, &mut binder);
     }
+    context.later.clear();
     binder.finish(context, &job.params());
     builder.parameters = binder.parameters;
     for statement in &job.statements {
@@ -282,7 +288,7 @@ fn with_points<'g>(
     if is_whole && !job.statements.iter().any(|statement| matches!(statement, JobStatement::Surface(_))) {
         builder.no_surface(context, &job.name);
     }
-    let is_settled = context.is_whole && builder.sampled.are_known();
+    let is_settled = context.is_whole && builder.sampled.are_known() && context.unmade.is_empty();
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
     let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
@@ -402,9 +408,11 @@ impl<'g> Builder<'_, 'g> {
         let Some(definition) = machines.get(&instance.definition.node) else {
             let known = machines.keys().chain(self.machines.iter().map(|(name, ..)| &name.node));
             context.unknown_item(&instance.definition, "machine", known.map(String::as_str));
+            context.unmade.insert(instance.name.node.clone());
             return;
         };
         let Some(flat) = machine::flatten(context, machines, definition) else {
+            context.unmade.insert(instance.name.node.clone());
             return;
         };
         let source = self.source(instance, first);
@@ -437,6 +445,7 @@ impl<'g> Builder<'_, 'g> {
         let Some(definition) = tools.get(&instance.definition.node) else {
             let known = tools.keys().chain(self.tools.iter().map(|(name, ..)| &name.node));
             context.unknown_item(&instance.definition, "tool", known.map(String::as_str));
+            context.unmade.insert(instance.name.node.clone());
             return;
         };
         let source = self.source(instance, first);
@@ -519,13 +528,6 @@ impl<'g> Builder<'_, 'g> {
         for (inner, value) in scope {
             self.scope.insert(format!("{}.{inner}", name.node), value.clone());
         }
-    }
-
-    /// True for a name that stands for something that could not be built (which has been reported).
-    fn is_broken_machine(&self, name: &Name) -> bool {
-        !self.scope.contains_key(&name.node)
-            && !self.tools.iter().any(|(tool, ..)| tool.node == name.node)
-            && !self.surfaces.iter().any(|(surface, _)| available::is_of(&surface.name, &name.node))
     }
 
     fn frame(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<FrameRef> {

@@ -93,6 +93,10 @@ pub(crate) struct Context<'g> {
     pub(crate) taken: HashSet<FileId>,
     /// Names that the item being looked at uses without their being defined.
     unknown: HashSet<String>,
+    /// What the job being looked at declares farther down, and where.
+    pub(crate) later: HashMap<String, Span>,
+    /// Its machines and tools that could not be made, which has been reported: their values are not known.
+    pub(crate) unmade: HashSet<String>,
     /// Whether a requirement did not hold in the item being looked at.
     is_unmet: bool,
     /// Steps of evaluation so far: expressions looked at and nodes walked over.
@@ -139,6 +143,8 @@ impl<'g> Context<'g> {
             reported: HashSet::new(),
             taken: HashSet::new(),
             unknown: HashSet::new(),
+            later: HashMap::new(),
+            unmade: HashSet::new(),
             is_unmet: false,
             moving: HashSet::new(),
             steps: Cell::new(0),
@@ -455,6 +461,18 @@ impl<'g> Context<'g> {
         }
         let message = format!("there is no {kind} `{}`", name.node);
         self.report(suggesting(Diagnostic::new(Code::UnknownName, name.span, message), name, known));
+    }
+
+    /// Reports a name that has no value; one that the job gives farther down has none yet.
+    pub(crate) fn unknown_value<'a>(&mut self, name: &Name, known: impl Iterator<Item = &'a str>) {
+        let first = name.node.split('.').next().unwrap_or_default();
+        if self.unmade.contains(first) {
+            return;
+        }
+        let Some(place) = self.later.get(first).copied() else { return self.unknown(name, "value", known) };
+        let message = format!("`{}` has no value yet", name.node);
+        let note = format!("`{first}` is declared here, and statements know only what stands above them");
+        self.report(Diagnostic::new(Code::UnknownName, name.span, message).note(place, note));
     }
 
     /// The same for what other files may declare: nothing is missing while one that is used could not be read, which has been reported.

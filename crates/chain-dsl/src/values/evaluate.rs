@@ -188,7 +188,7 @@ impl<'g> Context<'g> {
             return Value::Poison;
         }
         let name = crate::diagnostics::source::Spanned { node: joined, span: path.span };
-        self.unknown(&name, "value", scope.keys().map(String::as_str));
+        self.unknown_value(&name, scope.keys().map(String::as_str));
         Value::Poison
     }
 

@@ -5,7 +5,9 @@ use std::io::{BufRead, IsTerminal};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
 
-use flank::{TestRequest, TestResult, TestedSpec, accept_snapshot, find_specs, junit, test, write_texts};
+use flank::{
+    TestRequest, TestResult, TestedSnapshot, TestedSpec, accept_snapshot, find_specs, junit, test, write_texts,
+};
 
 use crate::arguments::Test;
 use crate::failure::{Failure, findings_in_full};
@@ -22,16 +24,15 @@ const BUILD_SERVER: &str = "CI";
 pub(crate) fn run(arguments: &Test) -> Result<Ending, Failure> {
     check_keeping(arguments)?;
     let specs = find_specs(&arguments.paths)?;
-    let result = tested(arguments, &specs)?;
+    let mut result = tested(arguments, &specs)?;
     if arguments.watch {
         return watch(arguments, result);
     }
-    if arguments.accept {
-        accept_all(&result)?;
-    } else if arguments.review {
-        review(&result)?;
+    let ending = if result.failed == 0 { Ending::Done } else { Ending::Unsolved };
+    if arguments.review {
+        review(&mut result)?;
     }
-    Ok(ending(arguments, &result))
+    Ok(ending)
 }
 
 /// # Errors
@@ -48,12 +49,6 @@ fn check_keeping(arguments: &Test) -> Result<(), Failure> {
     Ok(())
 }
 
-fn ending(arguments: &Test, result: &TestResult) -> Ending {
-    let differs = |spec: &TestedSpec| spec.snapshot.as_ref().is_some_and(|snapshot| !snapshot.is_same);
-    let accepted = result.specs.iter().filter(|spec| arguments.accept && differs(spec)).count();
-    if result.failed == accepted { Ending::Done } else { Ending::Unsolved }
-}
-
 /// Tests specs, and says what became of them.
 fn tested(arguments: &Test, specs: &[PathBuf]) -> Result<TestResult, Failure> {
     let start = Instant::now();
@@ -66,7 +61,10 @@ fn tested(arguments: &Test, specs: &[PathBuf]) -> Result<TestResult, Failure> {
             ..TestRequest::new(spec)
         })
         .collect();
-    let result = test(&requests, &Terminal)?;
+    let mut result = test(&requests, &Terminal)?;
+    if arguments.accept {
+        result = accepted(result)?;
+    }
     if arguments.json {
         print(&document::text(&result));
     } else {
@@ -124,30 +122,32 @@ fn annotate(spec: &TestedSpec) {
         }
     }
     spec.failure.iter().for_each(|why| line(&file(&spec.file), why));
-    let differs = spec.snapshot.iter().filter(|snapshot| !snapshot.is_same);
+    let differs = spec.snapshot.iter().filter(|snapshot| snapshot.differs());
     differs.for_each(|snapshot| line(&file(&snapshot.file), &snapshot.differences.join("; ")));
 }
 
-fn accept_all(result: &TestResult) -> Result<(), Failure> {
-    for spec in &result.specs {
+/// Writes all snapshots that differ.
+fn accepted(mut result: TestResult) -> Result<TestResult, Failure> {
+    for spec in &mut result.specs {
         if let Some(written) = accept_snapshot(spec)? {
-            print(&format!("wrote {written}\n"));
+            eprint(&format!("wrote {written}\n"));
         }
     }
-    Ok(())
+    Ok(TestResult::of_specs(result.specs))
 }
 
 /// Asks of each snapshot that differs.
-fn review(result: &TestResult) -> Result<(), Failure> {
-    let differ: Vec<&TestedSpec> =
-        result.specs.iter().filter(|spec| spec.snapshot.as_ref().is_some_and(|snapshot| !snapshot.is_same)).collect();
-    for (k, spec) in differ.iter().enumerate() {
+fn review(result: &mut TestResult) -> Result<(), Failure> {
+    let differs = |spec: &&mut TestedSpec| spec.snapshot.as_ref().is_some_and(TestedSnapshot::differs);
+    let differ: Vec<&mut TestedSpec> = result.specs.iter_mut().filter(differs).collect();
+    let count = differ.len();
+    for (k, spec) in differ.into_iter().enumerate() {
         let Some(snapshot) = &spec.snapshot else { continue };
-        print(&format!("\n{} of {}: {}\n{snapshot}", k + 1, differ.len(), spec.file));
+        print(&format!("\n{} of {}: {}\n{snapshot}", k + 1, count, spec.file));
         match answer() {
             Some('a') => {
-                accept_snapshot(spec)?;
-                print(&format!("wrote {}\n", snapshot.file));
+                let written = accept_snapshot(spec)?;
+                written.iter().for_each(|file| print(&format!("wrote {file}\n")));
             }
             Some('r') => print("rejected: the spec has to make what it made\n"),
             Some(_) => print("skipped\n"),
@@ -182,12 +182,24 @@ fn saved(file: &Path) -> Option<SystemTime> {
 fn watch(arguments: &Test, result: TestResult) -> Result<Ending, Failure> {
     let mut read: HashMap<PathBuf, Vec<PathBuf>> = HashMap::new();
     let mut known: HashMap<PathBuf, Option<SystemTime>> = HashMap::new();
+    // those whose text is wrong
+    let mut wrong: Vec<PathBuf> = Vec::new();
     let mut told = result;
     loop {
         for spec in &told.specs {
-            let files = [vec![PathBuf::from(&spec.file)], spec.read.clone()].concat();
-            known.extend(files.iter().map(|file| (file.clone(), saved(file))));
-            read.insert(PathBuf::from(&spec.file), files);
+            let own = PathBuf::from(&spec.file);
+            let mut files = [vec![own.clone()], spec.read.clone()].concat();
+            for file in &files {
+                known.entry(file.clone()).or_insert_with(|| saved(file));
+            }
+            // a file that it uses may be away for a moment
+            let before = read.remove(&own).filter(|_| spec.is_wrong());
+            files.extend(before.into_iter().flatten());
+            files.sort();
+            files.dedup();
+            wrong.retain(|spec| *spec != own);
+            wrong.extend(spec.is_wrong().then(|| own.clone()));
+            read.insert(own, files);
         }
         eprint("waiting for files to be saved\n");
         let touched = loop {
@@ -201,24 +213,31 @@ fn watch(arguments: &Test, result: TestResult) -> Result<Ending, Failure> {
                 .collect();
             // a folder without specs at the moment is none to end at
             let all = find_specs(&arguments.paths).unwrap_or_default();
-            touched.extend(all.into_iter().filter(|spec| !read.contains_key(spec)));
+            let new: Vec<PathBuf> = all.into_iter().filter(|spec| !read.contains_key(spec)).collect();
+            if !new.is_empty() {
+                // what was missing may be there now
+                touched.extend(wrong.iter().cloned());
+            }
+            touched.extend(new);
             touched.retain(|spec| spec.exists());
             touched.sort();
+            touched.dedup();
             if !touched.is_empty() {
                 break touched;
             }
             read.retain(|spec, _| spec.exists());
         };
+        // what is saved while they are tested is seen afterwards
+        known.iter_mut().for_each(|(file, at)| *at = saved(file));
         told = match tested(arguments, &touched) {
             Ok(result) => result,
             Err(failure) => {
                 failure.tell(false);
                 // they are looked at again when they are saved again
                 for spec in touched {
-                    known.insert(spec.clone(), None);
+                    known.insert(spec.clone(), saved(&spec));
                     read.entry(spec.clone()).or_insert_with(|| vec![spec]);
                 }
-                known.iter_mut().for_each(|(file, at)| *at = saved(file));
                 continue;
             }
         };

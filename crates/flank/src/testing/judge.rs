@@ -42,8 +42,9 @@ pub(super) fn judged<'g>(known: &Known<'_, '_, 'g>, expected: &Expected<'g>) -> 
         Expected::Status { surfaces, status, at } => Ok(of_status(tested, surfaces, (status, at))),
         Expected::Table { surface, columns, rows, within } => Ok(of_table(tested, *surface, (columns, rows, *within))),
         Expected::Surface { surface, other, within } => of_surface(known, *surface, (other, *within)),
-        Expected::AtPoints { surface, value, known, dimension, ends } => {
-            Ok(at_points(tested, *surface, (*value, known), *dimension, *ends))
+        Expected::AtPoints { surface, value, known, dimension, ends, is_difference } => {
+            let wanted = Wanted { ends: *ends, is_difference: *is_difference };
+            Ok(at_points(tested, *surface, (*value, known), *dimension, wanted))
         }
         Expected::Value { value, ends, quantities, dimension } => {
             of_value(known, [*value, ends[0], ends[1]], quantities, *dimension)
@@ -138,12 +139,26 @@ pub(super) fn of_requirement(tested: &Tested<'_, '_>, index: usize, number: usiz
     Verdict { holds: false, found, details: missed.iter().take(NAMED).map(told).collect() }
 }
 
+/// What is wanted of a value at points.
+#[derive(Clone, Copy)]
+struct Wanted {
+    ends: [f64; 2],
+    /// Whether it is how far another value is off.
+    is_difference: bool,
+}
+
+impl Wanted {
+    fn within(most: f64) -> Wanted {
+        Wanted { ends: [-most, most], is_difference: true }
+    }
+}
+
 /// Where a value at points lies that is to be between two ends: the worst place, and how many are wrong.
 fn worst(
     (sample, points): (&Sample<'_>, &[SurfacePoint]),
     values: &[Option<f64>],
     (name, dimension): (&str, Dimension),
-    [low, high]: [f64; 2],
+    Wanted { ends: [low, high], is_difference }: Wanted,
 ) -> Verdict {
     let excess = |value: f64| if value.is_nan() { f64::INFINITY } else { (low - value).max(value - high) };
     let known = values.iter().enumerate().filter_map(|(k, value)| value.map(|value| (k, value)));
@@ -156,15 +171,8 @@ fn worst(
         return Verdict { holds: false, found: format!("no point of {name} is solved"), details };
     };
     let wrong = known.filter(|(_, value)| excess(*value) > 0.0).count();
-    let is_symmetric = low == -high;
-    let what = if is_symmetric {
-        "off by up to"
-    } else if low == 0.0 {
-        "up to"
-    } else {
-        "reaches"
-    };
-    let found = match if is_symmetric { value.abs() } else { value } {
+    let what = if is_difference { "off by up to" } else { "reaches" };
+    let found = match if is_difference { value.abs() } else { value } {
         shown if shown.is_nan() => NO_NUMBER.to_string(),
         shown => format!("{what} {}", precise(dimension, shown)),
     };
@@ -188,13 +196,13 @@ fn at_points<'g>(
     index: usize,
     (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
     dimension: Dimension,
-    ends: [f64; 2],
+    wanted: Wanted,
 ) -> Verdict {
     let surface = tested.surface(index);
     let Some(sample) = &surface.sample else { return Verdict::lost("no sample") };
     let points = tested.points(index);
     let values = values(tested, index, (sample, points), (value, known));
-    worst((sample, points), &values, (&surface.name, dimension), ends)
+    worst((sample, points), &values, (&surface.name, dimension), wanted)
 }
 
 /// A function of points at those that are solved.
@@ -262,7 +270,7 @@ fn of_table<'g>(
             }
         };
         let apart: Vec<Option<f64>> = found.iter().zip(rows).map(|(value, row)| Some((*value)? - row[2 + k])).collect();
-        verdicts.push((name, worst((&sample, &points), &apart, (&surface.name, dimension), [-within, within])));
+        verdicts.push((name, worst((&sample, &points), &apart, (&surface.name, dimension), Wanted::within(within))));
     }
     let holds = verdicts.iter().all(|(_, verdict)| verdict.holds);
     let found: Vec<String> = verdicts.iter().map(|(name, verdict)| format!("{name} {}", verdict.found)).collect();
@@ -302,7 +310,7 @@ fn of_surface(known: &Known<'_, '_, '_>, index: usize, (other, within): (&str, f
     let Some(sample) = &pair[1].surface.sample else { return Ok(Verdict::lost("no sample")) };
     let deviations: Vec<Option<f64>> = map.deviations.iter().map(|um| um.map(|um| 1e-3 * um)).collect();
     let name = pair[1].whole_name();
-    let mut verdict = worst((sample, &map.points), &deviations, (&name, Dimension::LENGTH), [-within, within]);
+    let mut verdict = worst((sample, &map.points), &deviations, (&name, Dimension::LENGTH), Wanted::within(within));
     verdict.details.extend(map.refused.iter().map(|why| why.message.clone()));
     Ok(verdict)
 }

@@ -43,7 +43,7 @@ fn suite(spec: &TestedSpec, out: &mut String) {
         case("spec", "is right", Some(spec.findings.rendered(false)));
     }
     if let Some(snapshot) = &spec.snapshot {
-        case("snapshot", &snapshot.file, (!snapshot.is_same).then(|| snapshot.differences.join("; ")));
+        case("snapshot", &snapshot.file, snapshot.differs().then(|| snapshot.differences.join("; ")));
     }
     *out += "  </testsuite>\n";
 }

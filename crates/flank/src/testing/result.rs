@@ -69,6 +69,8 @@ pub struct TestedSnapshot {
     pub is_same: bool,
     /// What differs, in words, a line each.
     pub differences: Vec<String>,
+    /// Whether what differs was accepted: it is in the file now.
+    pub is_accepted: bool,
     /// The text that it would be now; nothing where it is the same.
     #[serde(skip)]
     pub text: Option<String>,
@@ -86,6 +88,13 @@ impl TestResult {
     }
 }
 
+impl TestedSnapshot {
+    /// Whether something differs that nobody accepted.
+    pub fn differs(&self) -> bool {
+        !self.is_same && !self.is_accepted
+    }
+}
+
 impl TestedSpec {
     fn expectations(&self) -> impl Iterator<Item = &TestedExpectation> {
         self.items.iter().flat_map(|item| &item.expectations)
@@ -98,7 +107,7 @@ impl TestedSpec {
 
     /// What does not hold, or keeps the spec from being tested.
     pub fn failed(&self) -> usize {
-        let differs = self.snapshot.as_ref().is_some_and(|snapshot| !snapshot.is_same);
+        let differs = self.snapshot.as_ref().is_some_and(TestedSnapshot::differs);
         let is_wrong = self.failure.is_some() || self.is_wrong();
         self.expectations().filter(|expectation| !expectation.holds).count()
             + usize::from(differs)

@@ -177,7 +177,7 @@ fn wrong_as_expected(compilation: &Compilation<'_>, request: &TestRequest, nothi
             place: written(compilation, *place).1,
             holds: codes.contains(&code.as_str()) && !told,
             found: if codes.is_empty() { "no error".to_string() } else { codes.join(", ") },
-            details: if told { vec![format!("also {}", others.join(", "))] } else { Vec::new() },
+            details: if told { vec![format!("not expected: {}", others.join(", "))] } else { Vec::new() },
         };
         match items.last_mut().filter(|item| item.name == *job) {
             Some(item) => item.expectations.push(expectation),

@@ -68,7 +68,7 @@ impl Display for TestedSpec {
 
 impl Display for TestedSnapshot {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "  differs from {}:", self.file)?;
+        writeln!(f, "  {} {}:", if self.is_accepted { "accepted in" } else { "differs from" }, self.file)?;
         self.differences.iter().try_for_each(|line| writeln!(f, "    {line}"))
     }
 }

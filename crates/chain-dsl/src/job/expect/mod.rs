@@ -223,7 +223,8 @@ impl<'g> Builder<'_, 'g> {
             let (scope, known) = self.scope_at_points(context, surface, value.span)?;
             let (value, dimension) = scalar(context, value, &scope)?;
             let (low, high) = context.range(range, &self.scope, dimension, "what is expected")?;
-            return Some(Expected::AtPoints { surface, value, known, dimension, ends: [low, high] });
+            let ends = [low, high];
+            return Some(Expected::AtPoints { surface, value, known, dimension, ends, is_difference: false });
         }
         let mut named = Named { scope: self.scope.clone(), list: Vec::new() };
         let [value, low, high] =
@@ -278,7 +279,7 @@ impl<'g> Builder<'_, 'g> {
             if value.as_constant() == Some(0.0) {
                 never_fails(context, span, SAME);
             }
-            return Some(Expected::AtPoints { surface, value, known, dimension, ends });
+            return Some(Expected::AtPoints { surface, value, known, dimension, ends, is_difference: true });
         }
         if let Some(surface) = self.as_surface(value) {
             return self.surface_near(context, (surface, target, within), span, job);
@@ -337,8 +338,8 @@ impl<'g> Builder<'_, 'g> {
                 if apart.iter().all(|part| part.as_constant() == Some(0.0)) {
                     never_fails(context, span, "it compares a surface with its own coordinates");
                 }
-                let ends = [0.0, within];
-                Some(Expected::AtPoints { surface, value, known, dimension: Dimension::LENGTH, ends })
+                let (dimension, ends) = (Dimension::LENGTH, [0.0, within]);
+                Some(Expected::AtPoints { surface, value, known, dimension, ends, is_difference: true })
             }
         }
     }

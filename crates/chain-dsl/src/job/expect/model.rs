@@ -70,6 +70,8 @@ pub enum Expected<'g> {
         dimension: Dimension,
         /// Between which ends it lies.
         ends: [f64; 2],
+        /// Whether it is how far a value lies from the one that is expected.
+        is_difference: bool,
     },
     /// A number.
     Value {

@@ -266,8 +266,12 @@ impl<'g> Builder<'_, 'g> {
         let found = labels.iter().position(|label| *label == word);
         if found.is_none() {
             let name = Name { node: path.joined(), span: path.span };
-            let known = ["profilewise", "lengthwise"].into_iter().chain(labels.iter().map(String::as_str));
-            context.unknown(&name, "direction of the sample", known.filter(|label| !label.contains(' ')));
+            let known = labels.iter().map(|label| match label.as_str() {
+                "root -> tip" => "profilewise",
+                "toe -> heel" => "lengthwise",
+                other => other,
+            });
+            context.unknown(&name, "direction of the sample", known);
         }
         found
     }

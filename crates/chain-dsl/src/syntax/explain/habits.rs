@@ -78,6 +78,9 @@ impl Mistake<'_> {
                 "what a used file defines is called by its plain name"
             }
             (_, "if") if wants(Rule::value) => "put the `if` into parentheses",
+            (_, "=") if statement == "error" => {
+                "an error is zero in the machine; a job gives it a value: `machine m = cradle(swivel_error: 1 arcmin)`"
+            }
             (_, "=") if wants(Rule::infix) && !wants(Rule::equals) && !self.leads() => "values are compared with `==`",
             (_, "==") if wants(Rule::equals) => "write `=` to give something a value",
             (_, "=") if statement == "surface" && wants(Rule::kw_in) => {
@@ -108,6 +111,9 @@ impl Mistake<'_> {
         let replaced = match (self.before(), self.say(), help) {
             ("*", "*", _) => ("write `^`", self.scan.extent(self.found - 1..self.found + 1), "^"),
             (_, "=", "an argument gets its value with `:`") => ("write `:`", self.place(), ":"),
+            (_, "=", _) if self.scan.say(self.range.start) == "error" => {
+                ("leave the value out", self.scan.extent(self.found..self.range.end), "")
+            }
             (_, "=", "values are compared with `==`") => ("write `==`", self.place(), "=="),
             (_, "==", _) => ("write `=`", self.place(), "="),
             (")", "*", _) => ("leave `*` out", self.place(), ""),

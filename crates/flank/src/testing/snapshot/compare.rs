@@ -11,11 +11,13 @@ use crate::project::{shown_path, units};
 use crate::solve::patch;
 use crate::testing::explain::{Moved, explained};
 use crate::testing::judge::{precise, significant};
-use crate::testing::points::Tested;
+use crate::testing::points::{Tested, place};
 use crate::testing::snapshot::text::KeptSurface;
 
 /// Nine digits of some hundred millimetres end here, mm.
 const DIGITS: f64 = 2e-6;
+/// The status of points that are found.
+const SOLVED: &str = "solved";
 /// Names of settings that are told.
 const NAMED: usize = 3;
 
@@ -59,8 +61,13 @@ pub(super) fn told(
 
 /// The settings that explain best how surfaces of a job moved.
 fn settings(tested: &Tested<'_, '_>, moved: &[Moved]) -> Option<String> {
+    if moved.is_empty() {
+        return None;
+    }
     let found = explained(tested, moved);
-    let best = found.first()?;
+    let Some(best) = found.first() else {
+        return Some(format!("{}: explained by none of its settings", tested.job.name));
+    };
     let each = found.iter().take(NAMED).map(|one| {
         let by = precise(one.dimension, one.by);
         let sign = if one.by > 0.0 { "+" } else { "" };
@@ -100,14 +107,17 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         along.collect()
     }
 
+    /// What moved by more than the digits of a snapshot show.
     fn moved(&self) -> Option<Moved> {
         let (_, points) = self.now.as_ref()?;
-        Some(Moved { surface: self.index, points: points.clone(), by: self.displacements() })
+        let by = self.displacements();
+        let is_moved = by.iter().flatten().any(|by| by.abs() > DIGITS);
+        is_moved.then(|| Moved { surface: self.index, points: points.clone(), by })
     }
 
     fn told(&self, new: &KeptSurface) -> Vec<String> {
         let name = format!("{}.{}", self.old.job, self.old.name);
-        let Some((_, points)) = &self.now else {
+        let Some((sample, points)) = &self.now else {
             return vec![format!("{name}: it has no coordinates {} any more", self.old.coordinates.join(" and "))];
         };
         let mut lines = Vec::new();
@@ -117,25 +127,15 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         if let Some((k, most)) = largest.filter(|(_, most)| most.abs() > DIGITS) {
             let known: Vec<f64> = by.iter().flatten().copied().collect();
             let rms = (known.iter().map(|x| x * x).sum::<f64>() / known.len() as f64).sqrt();
-            let columns = self.old.counts[1];
             lines.push(format!(
-                "{name} moved along its normal by at most {} at ({}, {}), rms {}{}",
+                "{name} moved along its normal by at most {} at {}, rms {}{}",
                 precise(flank_chain_dsl::Dimension::LENGTH, most),
-                k / columns + 1,
-                k % columns + 1,
+                place(sample, k),
                 precise(flank_chain_dsl::Dimension::LENGTH, rms),
                 self.angles(&by)
             ));
         }
-        let changed = |from: bool| {
-            let pairs = self.old.points.iter().zip(points);
-            pairs.filter(|(old, new)| old.is_solved() == from && (new.outcome == Outcome::Solved) != from).count()
-        };
-        for (count, what) in [(changed(true), "no longer solved"), (changed(false), "solved that were not")] {
-            if count > 0 {
-                lines.push(format!("{name}: {} {what}", units::counted(count, "point")));
-            }
-        }
+        lines.extend(self.other_statuses(&name, new));
         lines.extend(self.other_branch(&name, points));
         lines.extend(self.other_sample(&name, new));
         if self.old.work != new.work && lines.is_empty() {
@@ -146,6 +146,41 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         }
         if lines.is_empty() {
             lines.push(format!("{name}: its sample, its frame or its last digits differ"));
+        }
+        lines
+    }
+
+    /// What became of points that were solved, and what those were that are solved now.
+    fn other_statuses(&self, name: &str, new: &KeptSurface) -> Vec<String> {
+        let Some((sample, points)) = &self.now else { return Vec::new() };
+        // what is cut away in the end is known of the places of the sample alone
+        let is_sampled = self.old.is_at_places_of(new);
+        let now = |k: usize| if is_sampled { new.points[k].status.as_str() } else { points[k].outcome.word() };
+        let mut lines = Vec::new();
+        for (is_lost, what) in [(true, "no longer solved, but"), (false, "solved that were")] {
+            let differs = |k: &usize| {
+                let was = self.old.points[*k].is_solved();
+                was == is_lost && (now(*k) == SOLVED) != was
+            };
+            let changed: Vec<usize> = (0..points.len()).filter(differs).collect();
+            let Some(first) = changed.first() else { continue };
+            let other = |k: &usize| if is_lost { now(*k) } else { self.old.points[*k].status.as_str() };
+            let mut kinds: Vec<String> = changed.iter().map(|k| other(k).replace('_', " ")).collect();
+            kinds.sort();
+            kinds.dedup();
+            let count = format!("{} of {}", changed.len(), units::counted(points.len(), "point"));
+            lines.push(format!(
+                "{name}: {count} {what} {}, the first at {}",
+                kinds.join(" or "),
+                place(sample, *first)
+            ));
+        }
+        let old = self.old;
+        if !lines.is_empty() && old.asked == new.asked && old.solved != new.solved {
+            lines.push(format!(
+                "{name}: of {} that were looked at, {} are solved instead of {}",
+                old.asked, new.solved, old.solved
+            ));
         }
         lines
     }

@@ -44,39 +44,45 @@ pub(super) fn compared(request: &TestRequest, jobs: &[Tested<'_, '_>]) -> Result
     let is_there = files.exists(&path);
     let now: Vec<KeptSurface> = jobs.iter().flat_map(kept).collect();
     let text = text::written(&shown_path(Path::new(path.file_stem().unwrap_or_default())), &now);
+    let found = |differences: Vec<String>, picture| TestedSnapshot {
+        file: file.clone(),
+        is_same: differences.is_empty(),
+        text: (!differences.is_empty()).then(|| text.clone()),
+        differences,
+        is_accepted: false,
+        picture,
+    };
     if !is_there {
-        let differences = vec!["there is no snapshot yet".to_string()];
-        return Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture: None }));
+        return Ok(Some(found(vec!["there is no snapshot yet".to_string()], None)));
     }
     let before = match files.real_path(&path).and_then(|real| files.read(&real, MOST_BYTES)) {
         // tools that keep versions of texts may change the ends of their lines
         Ok(before) => before.replace("\r\n", "\n"),
-        Err(error) => {
-            let differences = vec![format!("cannot read it: {error}")];
-            return Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture: None }));
-        }
+        Err(error) => return Ok(Some(found(vec![format!("cannot read it: {error}")], None))),
     };
     if before == text {
-        return Ok(Some(TestedSnapshot { file, is_same: true, differences: Vec::new(), text: None, picture: None }));
+        return Ok(Some(found(Vec::new(), None)));
     }
     let (differences, picture) = match text::read(&before) {
         Ok(before) => compare::told(jobs, (&before, &now), &request.project)?,
         Err(why) => (vec![why.told()], None),
     };
-    Ok(Some(TestedSnapshot { file, is_same: false, differences, text: Some(text), picture }))
+    Ok(Some(found(differences, picture)))
 }
 
-/// Writes the snapshot that a tested spec would have now; its path, if anything differs.
+/// Writes the snapshot that a tested spec would have now, and holds it for accepted; its path, if anything differed.
 ///
 /// # Errors
 /// What stands in the way.
-pub fn accept_snapshot(tested: &TestedSpec) -> Result<Option<String>, Failure> {
-    let Some(TestedSnapshot { file, text: Some(text), .. }) = &tested.snapshot else { return Ok(None) };
-    let path = Path::new(file);
+pub fn accept_snapshot(tested: &mut TestedSpec) -> Result<Option<String>, Failure> {
+    let Some(snapshot) = &mut tested.snapshot else { return Ok(None) };
+    let Some(text) = &snapshot.text else { return Ok(None) };
+    let path = Path::new(&snapshot.file);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     write_texts(folder, &[(name, text.clone())], &[])?;
-    Ok(Some(file.clone()))
+    snapshot.is_accepted = true;
+    Ok(Some(snapshot.file.clone()))
 }
 
 /// The surfaces of a job as they are kept.

@@ -14,6 +14,8 @@ const LONGER: f64 = 1.25;
 const CLEAR: f64 = 0.3;
 /// Halvings of the way between two places. About a clearance that is least they find a depth of [`TOUCH`].
 const MOST_HALVINGS: u32 = 14;
+/// The depth is measured to feet that lie beyond the end of a piece by no more than this share of it.
+const PAST: f64 = 0.01;
 /// Steps in which the greatest depth is looked for.
 const STEPS_DOWN: usize = 30;
 
@@ -232,7 +234,9 @@ impl Way<'_, '_> {
         if let (Some(side_a), Some(side_b)) = (side_a, side_b)
             && (0..2).any(|k| side_a[k] * side_b[k] > 0)
         {
-            return None;
+            // the foot may come back to the very end of the piece where the way goes through
+            let is_through = foot_a.zip(foot_b).is_some_and(|feet| self.goes_through_end(feet, way));
+            return if is_through { self.halved(a, b, halvings) } else { None };
         }
         let (Some(foot_a), Some(foot_b)) = (foot_a, foot_b) else { return self.halved(a, b, halvings) };
         let (clear_a, clear_b) = (foot_a.clearance, foot_b.clearance);
@@ -253,16 +257,26 @@ impl Way<'_, '_> {
         if !is_same {
             return self.halved(a, b, halvings);
         }
+        let slopes = [(foot_a, &a.place), (foot_b, &b.place)].map(|(foot, place)| foot.rate(place.velocity) * span);
+        // where another piece generates the point, this one is met at an angle
+        let enters = [slopes[0] < -TOUCH, slopes[1] > TOUCH];
         match [clear_a, clear_b].map(|clear| clear <= TOUCH) {
+            [true, _] if enters[0] => self.halved(a, b, halvings),
+            [_, true] if enters[1] => self.halved(a, b, halvings),
             [true, true] => None,
             [true, false] => self.beside(a, b, halvings),
             [false, true] => self.beside(b, a, halvings),
             [false, false] => {
-                let rates = [(foot_a, &a.place), (foot_b, &b.place)].map(|(foot, place)| foot.rate(place.velocity));
-                let least = least_of_cubic([clear_a, clear_b], rates.map(|rate| rate * span));
+                let least = least_of_cubic([clear_a, clear_b], slopes);
                 if least > CLEAR * clear_a.min(clear_b) { None } else { self.halved(a, b, halvings) }
             }
         }
+    }
+
+    /// Whether a way, mm, whose ends lie on both sides of the piece's continuation beyond one of its ends may go through that end.
+    fn goes_through_end(&self, (foot_a, foot_b): (Foot, Foot), way: f64) -> bool {
+        let past = |foot: Foot| self.seen.piece.past(foot.at);
+        (foot_a.clearance < -TOUCH) != (foot_b.clearance < -TOUCH) && past(foot_a).min(past(foot_b)) < way
     }
 
     fn halved(&mut self, a: &mut Sight, b: &mut Sight, halvings: u32) -> Option<Cut> {
@@ -314,8 +328,10 @@ impl Way<'_, '_> {
         let mut step = if foot.rate(sight.place.velocity) > 0.0 { -0.5 * span } else { 0.5 * span };
         for _ in 0..STEPS_DOWN {
             let next = (motion + step).clamp(range.low, range.high);
-            match self.sight_at(next, &sight).map(|mut sight| self.foot(&mut sight)) {
-                Some((Some(foot), Some([0, 0]))) if -foot.clearance > depth => {
+            let found = self.sight_at(next, &sight).and_then(|mut sight| self.foot(&mut sight).0);
+            // what lies so little beyond an end is as far from the end as from the continuation
+            match found.filter(|foot| self.seen.piece.past(foot.at) <= PAST * -foot.clearance) {
+                Some(foot) if -foot.clearance > depth => {
                     depth = -foot.clearance;
                     motion = next;
                     step *= 2.0;

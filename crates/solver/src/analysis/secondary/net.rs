@@ -31,6 +31,9 @@ const STILL: f64 = 1e-7;
 const MOST_STEPS: usize = 12;
 /// How far beyond its range a parameter is followed to the foot, as a share of the range.
 const BEYOND: f64 = 0.05;
+/// A foot that lies no farther beyond the end of a piece than this, mm, lies on it: ways lead through the very end, above all those of
+/// points that the end generates, and rounding must not decide whether the piece is met.
+const END: f64 = 1e-7;
 
 /// Outputs: position, normal, and the derivatives of both by either parameter.
 const OUTPUTS: usize = 18;
@@ -41,6 +44,8 @@ pub(super) struct Piece {
     pub(super) number: usize,
     tape: PlaceTape,
     ranges: [Range; 2],
+    /// How fast it runs with either parameter where it does so most, mm.
+    speeds: [f64; 2],
     steps: [f64; 2],
     cells: Arc<[Cell]>,
     /// The cells in an order in which neighbours are near each other.
@@ -155,6 +160,7 @@ impl Piece {
             number,
             tape,
             ranges,
+            speeds: [0.0; 2],
             steps: [0.0; 2],
             cells: Arc::default(),
             order: Arc::default(),
@@ -168,6 +174,8 @@ impl Piece {
         let low = cells.iter().map(|cell| cell.ball.center - reach(cell)).reduce(|a, b| a.inf(&b));
         let high = cells.iter().map(|cell| cell.ball.center + reach(cell)).reduce(|a, b| a.sup(&b));
         piece.hull = [low, high].map(Option::unwrap_or_default);
+        let speed = |k: usize| cells.iter().map(|cell| 2.0 * cell.halves[k].norm() / steps[k]).fold(0.0, f64::max);
+        piece.speeds = [0, 1].map(speed);
         (piece.cells, piece.steps) = (cells.into(), steps);
         (piece.order, piece.parts) = (order.into(), parts.into());
         piece
@@ -250,19 +258,25 @@ impl Piece {
         if step.along.is_nan() {
             return Some(Found::Lost);
         }
-        let after = self.beyond(step.to, BEYOND);
-        (after != [0, 0] && self.beyond(at, BEYOND) != [0, 0]).then_some(Found::Beyond(after))
+        let margins = self.ranges.map(|range| BEYOND * range.width());
+        let after = self.beyond(step.to, margins);
+        (after != [0, 0] && self.beyond(at, margins) != [0, 0]).then_some(Found::Beyond(after))
     }
 
     /// On which side of the piece a place lies that Newton has found; both zero on the piece.
     pub(super) fn side(&self, at: [f64; 2]) -> Side {
-        self.beyond(at, ROUNDING)
+        self.beyond(at, [0, 1].map(|k| (ROUNDING * self.ranges[k].width()).max(END / self.speeds[k])))
     }
 
-    /// The same with ranges that are wider by a share.
-    fn beyond(&self, at: [f64; 2], share: f64) -> Side {
+    /// How far a place may lie beyond the ends of the piece, mm.
+    pub(super) fn past(&self, at: [f64; 2]) -> f64 {
+        (0..2).map(|k| self.speeds[k] * self.ranges[k].excess(at[k])).fold(0.0, f64::max)
+    }
+
+    /// The same with ranges that are wider by so much at either end.
+    fn beyond(&self, at: [f64; 2], margins: [f64; 2]) -> Side {
         [0, 1].map(|k| {
-            let (range, margin) = (self.ranges[k], share * self.ranges[k].width());
+            let (range, margin) = (self.ranges[k], margins[k]);
             i8::from(at[k] > range.high + margin) - i8::from(at[k] < range.low - margin)
         })
     }
