@@ -63,8 +63,8 @@ pub use job::expect::model::{
     ContactNumber, DeviationNumber, Expectation, Expected, ExpectedError, PointColumn, PointSet, Quantity, SolidNumber,
 };
 pub use job::sample::spaced;
-pub use load::files::{Buffers, Disk, Files};
-pub use load::{read_file, read_other_file};
+pub use load::files::{Buffers, Disk, Files, FolderEntry};
+pub use load::{project_folder, read_file, read_other_file};
 pub use model::{
     Axis, BlockLength, Contact, ContactCondition, ContactQuantity, Coordinate, CutterPiece, Frame, GeneratedSurface,
     Generation, Job, LawSource, Machine, MilledArea, Milling, MillingClearance, MillingObstacle, MountingAxis, NcWord,

@@ -77,7 +77,7 @@ limits! {
     OPERATIONS = 256, Pieces, "operations that hang on each other in an expression",
         "more than {} operations hang on each other", "give the parts names with `let`";
     POWER = 99, Pieces, "power of a length or an angle, above or below a line",
-        "a length or an angle to the power of more than {}", "write the formula in ratios: `(a / b)^n`";
+        "a length or an angle to the power of more than {}", "write the formula in ratios, such as `(a / b)^n`";
     MISTAKES = 100, Pieces, "mistakes before the rest is left unread",
         "more than {} mistakes: the rest is not looked at", "begin with the first one; it may cause the others";
     CALL_DEPTH = 64, Pieces, "functions that call each other in a line",

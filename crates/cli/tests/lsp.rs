@@ -12,9 +12,13 @@ mod editors;
 mod focus;
 #[path = "lsp/older.rs"]
 mod older;
+#[path = "lsp/paths.rs"]
+mod paths;
 #[path = "lsp/sessions.rs"]
 mod sessions;
 #[path = "lsp/shipped.rs"]
 mod shipped;
+#[path = "lsp/told.rs"]
+mod told;
 #[path = "lsp/wrong.rs"]
 mod wrong;

@@ -99,14 +99,14 @@ pub use exchange::templates::{
     FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
 pub use flank_chain_dsl::syntax::{Vocabulary, is_reserved, vocabulary};
-pub use flank_chain_dsl::{Buffers, Code, Disk, Files, NameKind, ValueSource, WordKind};
+pub use flank_chain_dsl::{Buffers, Code, Disk, Files, FolderEntry, NameKind, ValueSource, WordKind};
 pub use language::check::{CheckResult, Checked, check, check_with_names};
 pub use language::derive::derive;
 pub use language::derive::result::{
     CostTable, Derivation, DerivationPage, DeriveResult, FormulaStyle, JobCost, Operations, SurfaceCost,
 };
 pub use language::editor::analysis::{Analysis, LocatedFinding, TextCure, TextEdit, TextSpan, analyse};
-pub use language::editor::completion::{Completion, CompletionKind};
+pub use language::editor::completion::{Completion, CompletionKind, PathCompletions};
 pub use language::editor::hover::Hover;
 pub use language::editor::names::{IndexedName, IndexedValue};
 pub use language::editor::navigation::Reference;

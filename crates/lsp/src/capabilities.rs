@@ -24,7 +24,7 @@ pub(super) fn told() -> InitializeResult {
             ..TextDocumentSyncOptions::default()
         })),
         completion_provider: Some(CompletionOptions {
-            trigger_characters: Some([".", ":", "=", "(", " "].map(str::to_string).to_vec()),
+            trigger_characters: Some([".", ":", "=", "(", " ", "\"", "/"].map(str::to_string).to_vec()),
             ..CompletionOptions::default()
         }),
         hover_provider: Some(HoverProvider::Bool(true)),

@@ -53,6 +53,8 @@ pub(super) struct Findings {
     of: BTreeMap<PathBuf, Found>,
     /// Also of specs that were open: the page may show one of them.
     reads: BTreeMap<PathBuf, Option<BTreeSet<PathBuf>>>,
+    /// What the editor was told last of each file, as far as it shows something or is open.
+    told: BTreeMap<PathBuf, PublishDiagnosticsParams>,
 }
 
 impl Findings {
@@ -78,7 +80,7 @@ impl Findings {
         let mut about: BTreeSet<PathBuf> = found.of.keys().cloned().collect();
         let old = self.of.insert(spec.to_path_buf(), found);
         about.extend(old.into_iter().flat_map(|old| old.of.into_keys()));
-        about.iter().filter_map(|file| self.told(file, documents)).collect()
+        about.iter().flat_map(|file| self.news(file, documents)).collect()
     }
 
     /// Forgets a spec that is closed.
@@ -86,12 +88,37 @@ impl Findings {
         let old = self.of.remove(spec);
         let mut about: BTreeSet<PathBuf> = old.into_iter().flat_map(|old| old.of.into_keys()).collect();
         about.insert(spec.to_path_buf());
-        about.iter().filter_map(|file| self.told(file, documents)).collect()
+        about.iter().flat_map(|file| self.news(file, documents)).collect()
+    }
+
+    /// What the editor does not know yet of a file. Of each version of an open text it is told once, also that nothing has changed.
+    fn news(&mut self, file: &Path, documents: &Documents) -> Vec<PublishDiagnosticsParams> {
+        let Some(now) = self.found_in(file, documents) else { return Vec::new() };
+        let before = self.told.remove(file);
+        if now.version.is_some() || !now.diagnostics.is_empty() {
+            self.told.insert(file.to_path_buf(), now.clone());
+        }
+        // a text may have been open under another address, behind a link
+        let is_left = |before: &PublishDiagnosticsParams| before.uri != now.uri && !before.diagnostics.is_empty();
+        let nothing = |before: PublishDiagnosticsParams| PublishDiagnosticsParams {
+            uri: before.uri,
+            version: None,
+            diagnostics: Vec::new(),
+        };
+        let is_known = match &before {
+            Some(before) => {
+                *before == now
+                    || (now.version.is_none() && before.uri == now.uri && before.diagnostics == now.diagnostics)
+            }
+            None => now.version.is_none() && now.diagnostics.is_empty(),
+        };
+        let left = before.filter(is_left).map(nothing);
+        left.into_iter().chain((!is_known).then_some(now)).collect()
     }
 
     /// All that is found in a file as it is now, each finding once. What a spec that uses it found in an older text has no place in a newer one,
     /// and of an open text nothing is told before its own findings are known.
-    fn told(&self, file: &Path, documents: &Documents) -> Option<PublishDiagnosticsParams> {
+    fn found_in(&self, file: &Path, documents: &Documents) -> Option<PublishDiagnosticsParams> {
         let document = documents.get(file);
         let is_now = |found: &&Found| document.is_none_or(|document| document.since <= found.generation);
         let own = self.of.get(file).filter(is_now);

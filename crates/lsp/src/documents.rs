@@ -5,7 +5,7 @@ use std::io::{Error, ErrorKind, Result};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use flank::{Disk, Files, ShippedFiles};
+use flank::{Disk, Files, FolderEntry, ShippedFiles};
 use gen_lsp_types::TextDocumentContentChangeEvent;
 
 use super::position::Lines;
@@ -147,5 +147,14 @@ impl Files for Documents {
             None if ShippedFiles::inside(path).is_some() => ShippedFiles.read(path, most),
             None => Disk.read(path, most),
         }
+    }
+
+    fn entries(&self, folder: &Path, most: usize) -> Vec<FolderEntry> {
+        let folder = plain(folder);
+        if ShippedFiles::inside(&folder).is_some() {
+            return ShippedFiles.entries(&folder, most);
+        }
+        let folder = real(&folder);
+        FolderEntry::with_texts(Disk.entries(&folder, most), &folder, self.open.keys())
     }
 }

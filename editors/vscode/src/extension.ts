@@ -61,6 +61,7 @@ async function start(): Promise<void> {
             fileEvents: vscode.workspace.createFileSystemWatcher("**/*.{chain,csv}"),
         },
         middleware: {
+            provideCompletionItem: async (document, position, context, token, next) => goingOn(await next(document, position, context, token)),
             executeCommand: (name, given, next) => {
                 if (name === "flank.preview") return preview(given[0] as string, given[1] as string);
                 if (name === "flank.explain") return explain(given[0] as string);
@@ -69,6 +70,15 @@ async function start(): Promise<void> {
         },
     });
     await client.start();
+}
+
+/** Behind a folder of a path its own files are proposed. */
+function goingOn(found: vscode.CompletionItem[] | vscode.CompletionList | null | undefined): typeof found {
+    const items = Array.isArray(found) ? found : (found?.items ?? []);
+    for (const item of items) {
+        if (item.kind === vscode.CompletionItemKind.Folder) item.command = { title: "", command: "editor.action.triggerSuggest" };
+    }
+    return found;
 }
 
 async function stop(): Promise<void> {

@@ -85,7 +85,7 @@ impl<'g> Linkage<'g> {
     /// Whether there are as many equations as axes, and not too many; reported if not.
     fn is_even(&self, context: &mut Context<'_>, axes: &[BuiltAxis<'g>]) -> bool {
         let names = quoted(&self.names(axes));
-        let help = "each component in which a loop closes gives one axis: `close tip = pin along x, y` gives two";
+        let help = "each component in which a loop closes gives one axis; two are given by words such as `along x, y`";
         let (equations, unknown) = (self.residuals.len(), self.axes.len());
         let (place, message) = match self.residuals.first() {
             None => (axes[self.axes[0]].name.span, format!("no loop closes over the unknown axis {names}")),
@@ -143,7 +143,8 @@ pub(crate) fn linkages<'g>(
                 }
                 None => {
                     let message = "no unknown axis moves these frames against each other in all components".to_owned();
-                    let help = "a loop gives unknown axes their motion: `unknown rod : rotary in -40 deg .. 40 deg`";
+                    let help =
+                        "a loop gives unknown axes their motion, such as `unknown rod : rotary in -40 deg .. 40 deg`";
                     context.report(Diagnostic::new(Code::OpenLoop, closed.span, message).help(help));
                     return Vec::new();
                 }

@@ -12,7 +12,7 @@ use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::{Parameter, RangedVariable, ValueSource};
 use crate::syntax::ast::{Argument, Dimension, Expression, ExpressionKind, Param};
-use crate::values::context::{Context, Role, quoted};
+use crate::values::context::{Context, READABLE, Role, quoted};
 use crate::values::dimension::shown;
 use crate::values::functions::plural;
 use crate::values::segment::Profile;
@@ -126,7 +126,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         let dimension = context.dimension(&param.dimension)?;
         if param.is_error && is_count(&param.dimension) {
             let message = format!("{} is a count: an error may be as small as it likes", shown_name(param));
-            let help = "a whole number that may differ is a parameter: `param name : count = 0`";
+            let help = "a whole number that may differ is a parameter, such as `param name : count = 0`";
             context.report(Diagnostic::new(Code::WrongDimension, param.dimension.span, message).help(help));
             return None;
         }
@@ -350,11 +350,16 @@ impl<'a, 'g> Binder<'a, 'g> {
             Source::Job => {
                 for name in &self.missing {
                     let message = format!("`{}` has no value", name.node);
-                    let help = "give it one: `param name : dimension = value`";
-                    context.report(Diagnostic::new(Code::MissingValue, name.span, message).help(help));
+                    let help = "give it one: `param name : … = …`";
+                    let diagnostic = Diagnostic::new(Code::MissingValue, name.span, message).help(help);
+                    let written = params.iter().find(|param| param.name == *name);
+                    let valued = written.and_then(|param| Some((param, starting_value(param)?)));
+                    context.report(valued.into_iter().fold(diagnostic, |diagnostic, (param, value)| {
+                        diagnostic.cure(format!("write `= {value}`"), behind(param), format!(" = {value}"))
+                    }));
                 }
             }
-            Source::Instance { name, definition, settings, .. } => {
+            Source::Instance { name, definition, settings, job, .. } => {
                 let known: HashSet<&str> = params.iter().map(|param| param.name.node.as_str()).collect();
                 let unknown = settings.iter().filter_map(|setting| setting.name.as_ref());
                 let unknown = unknown.filter(|name| !known.contains(name.node.as_str())).count();
@@ -364,11 +369,10 @@ impl<'a, 'g> Binder<'a, 'g> {
                     let help =
                         format!("give the value{}: `{definition}({}: …)`", plural(names.len()), names.join(": …, "));
                     let mut diagnostic = Diagnostic::new(Code::MissingValue, name.span, message).help(help);
-                    let examples = params.iter().filter(|param| names.contains(&param.name.node.as_str()));
-                    if let Some(settings) = examples.map(|param| example(param)).collect::<Option<Vec<String>>>() {
+                    let missing = params.iter().filter(|param| names.contains(&param.name.node.as_str())).copied();
+                    for settings in settings_to_choose_from(&missing.collect::<Vec<_>>(), job) {
                         let definition = (*definition).to_string();
-                        diagnostic =
-                            diagnostic.rewriting(Rewriting::Settings(name.span, definition, settings.join(", ")));
+                        diagnostic = diagnostic.rewriting(Rewriting::Settings(name.span, definition, settings));
                     }
                     context.report(diagnostic);
                 }
@@ -378,8 +382,33 @@ impl<'a, 'g> Binder<'a, 'g> {
     }
 }
 
-/// A setting with a value that the parameter may have: the lower end of its range, or one of its unit; none of a profile.
-fn example(param: &Param) -> Option<String> {
+/// Settings to start from, with each of the job's profiles where a profile is missing.
+pub(crate) fn settings_to_choose_from(missing: &[&Param], job: &Scope<'_>) -> Vec<String> {
+    let is_profile_value = |(_, value): &(&String, &Value<'_>)| matches!(value, Value::Profile(_));
+    let mut profiles: Vec<&str> = job.iter().filter(is_profile_value).map(|(name, _)| name.as_str()).collect();
+    profiles.sort_unstable();
+    if !missing.iter().any(|param| is_profile(&param.dimension)) {
+        profiles = vec![""];
+    }
+    let with = |profile: &&str| {
+        let setting = |param: &&Param| {
+            let given = if is_profile(&param.dimension) { Some((*profile).to_string()) } else { starting_value(param) };
+            Some(format!("{}: {}", param.name.node, given?))
+        };
+        Some(missing.iter().map(setting).collect::<Option<Vec<String>>>()?.join(", "))
+    };
+    profiles.iter().take(READABLE).filter_map(with).collect()
+}
+
+/// Behind all that is said of a parameter.
+fn behind(param: &Param) -> Span {
+    let said = [param.range.as_ref().map(|range| range.span), param.step.as_ref().map(|step| step.span)];
+    let end = said.into_iter().flatten().fold(param.dimension.span.end, |end, span| end.max(span.end));
+    Span { start: end, end, ..param.dimension.span }
+}
+
+/// A value that the parameter may have: the lower end of its range, or one of its unit; none of a profile.
+fn starting_value(param: &Param) -> Option<String> {
     let ones: Vec<(&str, i32)> =
         param.dimension.factors.iter().map(|(name, power)| (name.node.as_str(), *power)).collect();
     let unit = match ones[..] {
@@ -387,6 +416,7 @@ fn example(param: &Param) -> Option<String> {
         [("angle", 1)] => " deg",
         [("number" | "count", 1)] => "",
         [("length", 1), ("angle", -1)] => " mm/rev",
+        [("angle", 1), ("length", -1)] => " deg/mm",
         _ => return None,
     };
     let low = param.range.as_ref().and_then(|range| match &range.low.kind {
@@ -397,7 +427,7 @@ fn example(param: &Param) -> Option<String> {
         },
         _ => None,
     });
-    Some(format!("{}: {}", param.name.node, low.unwrap_or_else(|| format!("1{unit}"))))
+    Some(low.unwrap_or_else(|| format!("1{unit}")))
 }
 
 /// A value cannot stay, which has been reported.

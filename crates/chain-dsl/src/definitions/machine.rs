@@ -111,7 +111,10 @@ pub(crate) fn flatten<'a, 'g>(
     let mut line = vec![machine];
     while let Some(parent) = &line[line.len() - 1].extends {
         let Some(next) = machines.get(&parent.node) else {
-            context.unknown_item(parent, "machine", machines.keys().map(String::as_str));
+            // what extends it itself would be a circle
+            let others = machines.keys().map(String::as_str);
+            let others = others.filter(|name| line.iter().all(|seen| seen.name.node != *name));
+            context.unknown_item(parent, "machine", others);
             return None;
         };
         if line.iter().any(|seen| seen.name.node == next.name.node) {

@@ -16,6 +16,8 @@ pub(crate) struct Places {
     pub(crate) point: Span,
     pub(crate) side: Span,
     pub(crate) segment: Option<Span>,
+    /// Whether nothing else has its side of the steel from the same words.
+    pub(crate) is_alone: bool,
 }
 
 /// Whether `raw`, square to a surface, points against `outward`: the same answer everywhere in the ranges of the unknowns, or
@@ -31,6 +33,11 @@ pub(crate) fn is_flipped<'g>(
     flipped
         .map_err(|seen| {
             let mut diagnostic = no_side([places.point, places.side], unknowns, &seen);
+            if diagnostic.code == Code::SteelSide && diagnostic.span == places.side && places.is_alone {
+                for written in seen.examples().into_iter().flatten() {
+                    diagnostic = diagnostic.cure(format!("write `{written}`"), places.side, written);
+                }
+            }
             if let Some(segment) = places.segment {
                 diagnostic = diagnostic.note(segment, "along this segment");
             }
@@ -96,13 +103,14 @@ pub(crate) fn no_side([point, body]: [Span; 2], unknowns: &[RangedVariable<'_>],
         let help = format!("let the point move in two directions with {names}");
         return Diagnostic::new(Code::SteelSide, point, message).help(help);
     }
-    let (message, hint) = if seen.runs_along() {
-        ("this direction is zero or runs along the surface: it does not say on which side the steel lies", "")
+    let message = if seen.runs_along() {
+        "this direction is zero or runs along the surface: it does not say on which side the steel lies"
     } else {
-        let message = "this is one side of the surface at some points, and the other side at others";
-        (message, "; it may depend on the parameters")
+        "this is one side of the surface at some points, and the other side at others"
     };
-    let help = format!("name a direction that points into the steel everywhere, such as {}{hint}", seen.example());
+    let examples = seen.examples().map(|[example, _]| format!("such as `{example}` or its opposite"));
+    let hint = examples.unwrap_or_else(|| "which may depend on the parameters".to_string());
+    let help = format!("name a direction that points into the steel everywhere, {hint}");
     Diagnostic::new(Code::SteelSide, body, message).help(help)
 }
 

@@ -8,7 +8,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::model::NcWord;
 use crate::syntax::ast;
-use crate::values::context::{Context, quoted};
+use crate::values::context::{Context, READABLE, quoted};
 use crate::values::dimension::Dimension;
 use crate::values::value::{Constant, Scope, Value};
 
@@ -70,17 +70,26 @@ fn axis_of<'g>(
         [] => format!("`{address}` says nothing of an axis"),
         _ => format!("`{address}` mixes axes {}", quoted(&names)),
     };
-    let example = names.first().copied().or(axes.first().map(|axis| axis.name.node.as_str())).unwrap_or("A");
-    let help = format!("a word says where one axis stands: `nc {address} = {example}`, or `-{example}`");
-    context.report(Diagnostic::new(Code::NcWord, word.value.span, message).help(help));
+    let all = || axes.iter().map(|axis| axis.name.node.as_str()).collect();
+    let names: Vec<&str> = if names.is_empty() { all() } else { names };
+    let example = names.first().copied().unwrap_or("A");
+    let help = format!("a word says where one axis stands, such as `nc {address} = {example}`, or `-{example}`");
+    let diagnostic = Diagnostic::new(Code::NcWord, word.value.span, message).help(help);
+    context.report(writing_axes(diagnostic, word.value.span, &names));
     None
+}
+
+/// Offers each of a few axes as what a word says.
+fn writing_axes(diagnostic: Diagnostic, span: Span, names: &[&str]) -> Diagnostic {
+    let each = names.iter().take(READABLE).flat_map(|name| [(*name).to_string(), format!("-{name}")]);
+    each.fold(diagnostic, |diagnostic, axis| diagnostic.cure(format!("write `{axis}`"), span, axis))
 }
 
 fn build<'g>(context: &mut Context<'g>, word: &ast::NcWord, scope: &Scope<'g>, axis: &BuiltAxis<'g>) -> Option<NcWord> {
     let address = &word.address.node;
     if !is_address(address) {
         let message = format!("`{address}` is no address of an NC program");
-        let help = "an address is a capital letter, perhaps with a number behind: `A`, `B1`";
+        let help = "an address is a capital letter, perhaps with a number behind, such as `A` or `B1`";
         context.report(Diagnostic::new(Code::NcWord, word.address.span, message).help(help));
         return None;
     }
@@ -94,8 +103,9 @@ fn build<'g>(context: &mut Context<'g>, word: &ast::NcWord, scope: &Scope<'g>, a
         Constant::Known(_) | Constant::Moves(_) => {
             let name = &axis.name.node;
             let message = format!("{what} does not go on as axis `{name}` does");
-            let help = format!("`{name}` or `-{name}`, perhaps with something added that stands still");
-            context.report(Diagnostic::new(Code::NcWord, word.value.span, message).help(help));
+            let help = format!("write `{name}` or `-{name}`, perhaps with something added that stands still");
+            let diagnostic = Diagnostic::new(Code::NcWord, word.value.span, message).help(help);
+            context.report(writing_axes(diagnostic, word.value.span, &[name]));
             return None;
         }
     };

@@ -73,7 +73,7 @@ fn segments<'g>(
 ) -> Option<Profile<'g>> {
     if written.segments.is_empty() && !written.broken {
         let message = format!("`{}` has no segments", written.name.node);
-        let help = "add one: `flank = line(from: [x, y], to: [x, y])`";
+        let help = "add one, such as `flank = line(from: [x, y], to: [x, y])`";
         context.report(Diagnostic::new(Code::BrokenProfile, written.name.span, message).help(help));
     }
     for (k, segment) in written.segments.iter().enumerate() {
@@ -206,7 +206,7 @@ fn spline<'g>(
         _ if sampled::named(call).is_some() => {
             let Some(sampled) = sampled else {
                 let message = "a tool by itself has no samples whose points a spline goes through";
-                let help = "write the profile into the job, and give it to the tool: `param section : profile`";
+                let help = "write the profile into the job, and give it to a parameter of the tool, such as `param section : profile`";
                 context.report(Diagnostic::new(Code::WrongKind, call.span, message).help(help));
                 return None;
             };

@@ -223,7 +223,8 @@ fn build_surface<'g>(
             let parameters = [u.variable, v.variable];
             let raw = Surface::raw_normal(parameters, position);
             let segment = along.map(|along| along.segment.span);
-            let places = Places { point: written.at.span, side: written.body.span, segment };
+            let is_alone = segment.is_none() && written.names.len() == 1;
+            let places = Places { point: written.at.span, side: written.body.span, segment, is_alone };
             let flipped = material_side::is_flipped(context, places, &unknowns, raw, -steel)?;
             ToolShape::Surface(Surface::along(parameters, position, raw, flipped))
         }
@@ -293,7 +294,7 @@ fn has_its_parameters(context: &mut Context<'_>, written: &ast::ToolSurface, nam
         ),
         (false, 3) => (
             "a surface has two parameters (a cutting edge one)",
-            "with three, a condition says where the steel lies: `body where u^2 + v^2 < radius^2`",
+            "with three, a condition says where the steel lies, such as `body where u^2 + v^2 < radius^2`",
         ),
         (false, _) => ("a surface has two parameters (a cutting edge one)", ""),
     };

@@ -212,7 +212,7 @@ fn check_rigid<'g>(context: &mut Context<'g>, rotation: Matrix3<'g>, span: Span)
             let (reason, help) = if (found[3] + 1.0).abs() < NEARLY {
                 (
                     "it turns a right hand into a left one".to_string(),
-                    "for the other hand, say `mirror_x()`, `mirror_y()`, `mirror_z()` or `mirror([x, y, z])`",
+                    "for the other hand, mirror it by one such as `mirror_x()`",
                 )
             } else {
                 let reason = format!("its rows are not unit vectors at right angles (off by {worst:.1e})");

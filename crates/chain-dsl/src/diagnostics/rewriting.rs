@@ -16,6 +16,8 @@ pub(crate) enum Rewriting {
     Without(&'static str, Span),
     /// The word before a place becomes another one.
     WordBefore(&'static str, Span, &'static str),
+    /// The first of these words in a place becomes another one.
+    Word(Span, String, String),
     /// Of all entries of a list these stand in it, in this order.
     Ordered(Span, Vec<Span>),
     /// The entries of a list, with brackets unless these stand around it.
@@ -57,6 +59,10 @@ impl Rewriting {
                 let before = whole(*span)[..span.start as usize].trim_end();
                 let start = before.strip_suffix(word)?.len() as u32;
                 Some(writing(Span { start, end: before.len() as u32, ..*span }, (*other).to_string()))
+            }
+            Rewriting::Word(span, word, other) => {
+                let start = span.start + text(*span).find(word.as_str())? as u32;
+                Some(writing(Span { start, end: start + word.len() as u32, ..*span }, other.clone()))
             }
             Rewriting::Ordered(all, entries) => {
                 let list: Vec<&str> = entries.iter().map(|span| text(*span)).collect();

@@ -8,8 +8,9 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::{RangedVariable, ToolShape};
 use crate::syntax::ast::{self, JobStatement};
-use crate::values::context::{Context, READABLE, quoted};
+use crate::values::context::{Context, quoted};
 
+use super::choices::choosing;
 use super::{Builder, FrameRef};
 
 /// A smooth surface of a tool, or an earlier one of the job, and the frame it is fixed to.
@@ -60,13 +61,14 @@ pub(super) fn which_piece(context: &mut Context<'_>, name: &Name, pieces: &[&str
     context.report(choosing(diagnostic, name.span, &whole));
 }
 
-/// Offers each of a few things that may be meant at a place.
-fn choosing(diagnostic: Diagnostic, span: Span, choices: &[&str]) -> Diagnostic {
-    let few = choices.iter().take_while(|_| choices.len() <= READABLE);
-    few.fold(diagnostic, |diagnostic, choice| diagnostic.cure(format!("write `{choice}`"), span, *choice))
-}
-
 impl<'g> Builder<'_, 'g> {
+    /// True for a name that stands for something that could not be built (which has been reported).
+    pub(super) fn is_broken_machine(&self, name: &Name) -> bool {
+        !self.scope.contains_key(&name.node)
+            && !self.tools.iter().any(|(tool, ..)| tool.node == name.node)
+            && !self.surfaces.iter().any(|(surface, _)| is_of(&surface.name, &name.node))
+    }
+
     /// The names of the pieces of a surface of the job; none if it is one piece.
     pub(super) fn pieces_of(&self, name: &str) -> Vec<&str> {
         let split = self.surfaces.iter().filter_map(|(surface, _)| surface.name.split_once('.'));
@@ -112,13 +114,16 @@ impl<'g> Builder<'_, 'g> {
         let has_one = |(_, _, tool): &&(Name, String, BuiltTool<'g>)| {
             tool.surfaces.iter().any(|surface| surface.name == name.node)
         };
-        let help = match self.tools.iter().find(has_one) {
-            Some((tool, ..)) => format!("that of the tool is `{}.{}`", tool.node, name.node),
-            None => "a surface is made from one of a tool, or from one that is made further up".to_string(),
-        };
         let first = self.names.get(&name.node).copied().unwrap_or(name.span);
-        let diagnostic = Diagnostic::new(Code::UnknownName, name.span, message).help(help);
-        context.report(diagnostic.note(first, "it is made here"));
+        let diagnostic = Diagnostic::new(Code::UnknownName, name.span, message).note(first, "it is made here");
+        context.report(match self.tools.iter().find(has_one) {
+            Some((tool, ..)) => {
+                let own = format!("{}.{}", tool.node, name.node);
+                let diagnostic = diagnostic.help(format!("that of the tool is `{own}`"));
+                diagnostic.cure(format!("write `{own}`"), name.span, own)
+            }
+            None => diagnostic.help("a surface is made from one of a tool, or from one that is made further up"),
+        });
     }
 
     /// A surface that the job made before, with all its pieces or one of them.
@@ -211,43 +216,5 @@ impl<'g> Builder<'_, 'g> {
             diagnostic = diagnostic.cure(format!("add `{mount}`"), end, format!("    {mount}\n"));
         }
         context.report(diagnostic);
-    }
-
-    /// Reports a job that makes no surface, with those that it could make of its first mounted tool over all its motions.
-    pub(super) fn no_surface(&self, context: &mut Context<'g>, job: &Name) {
-        let message = format!("`{}` makes no surface", job.node);
-        let help = "add one: `surface flank in m.work = envelope(c.flank, over: roll)`";
-        let mut diagnostic = Diagnostic::new(Code::NoSurface, job.span, message).help(help);
-        for (written, end) in self.surfaces_to_choose_from().iter().filter_map(|written| Some((written, self.end?))) {
-            diagnostic = diagnostic.cure(format!("add `{written}`"), end, format!("    {written}\n"));
-        }
-        context.report(diagnostic);
-    }
-
-    fn surfaces_to_choose_from(&self) -> Vec<String> {
-        let mounted = self.tools.iter().find_map(|(name, _, built)| {
-            let frame = self.mounts.get(&name.node)?.0?;
-            let surface = built.surfaces.first()?;
-            Some((format!("{}.{}", name.node, surface.name), surface.name.clone(), self.frame_name(frame)))
-        });
-        let Some((path, name, frame)) = mounted.filter(|(_, name, _)| !self.names.contains_key(name)) else {
-            return Vec::new();
-        };
-        let motions = self.motions.iter().filter(|motion| !self.unknowns.contains(&motion.variable));
-        let motions: Vec<&str> = motions.map(|motion| motion.name.as_str()).collect();
-        let over = match motions[..] {
-            [] => return Vec::new(),
-            [motion] => motion.to_string(),
-            _ => format!("[{}]", motions.join(", ")),
-        };
-        let works = self.frames_to_choose_from().into_iter().filter(|work| *work != frame);
-        works.map(|work| format!("surface {name} in {work} = envelope({path}, over: {over})")).collect()
-    }
-
-    /// The frames that a tool may sit on; none where they are too many to read.
-    fn frames_to_choose_from(&self) -> Vec<String> {
-        let all = (0..self.machines.len()).flat_map(|m| (0..self.machines[m].2.frames.len()).map(move |k| (m, k)));
-        let names: Vec<String> = all.map(|frame| self.frame_name(frame)).take(READABLE + 1).collect();
-        if names.len() > READABLE { Vec::new() } else { names }
     }
 }

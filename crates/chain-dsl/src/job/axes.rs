@@ -6,6 +6,7 @@ use crate::definitions::circles::{Following, report_circles};
 use crate::definitions::machine::LawKind;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
+use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::Span;
 use crate::model::{Axis, LawSource, Machine};
 use crate::syntax::ast::{self, ExpressionKind};
@@ -15,6 +16,13 @@ use crate::values::value::Constant;
 
 use super::{Builder, are_even};
 
+/// An axis with a law that may be wrong (and that is reported), where it is named, and what is said of it alone.
+pub(super) struct Driven<'g> {
+    pub(super) law: Option<Expr<'g>>,
+    pub(super) place: Span,
+    pub(super) whole: Option<Span>,
+}
+
 impl<'g> Builder<'_, 'g> {
     pub(super) fn drive(&mut self, context: &mut Context<'g>, drive: &ast::Drive) {
         let axes = (["axis", "axes"], drive.targets.iter().map(|target| target.span).collect());
@@ -23,13 +31,22 @@ impl<'g> Builder<'_, 'g> {
         if !is_broken {
             are_even(context, axes, laws, "write as many laws as axes: `drive m.X, m.Z = 20 mm, feed`");
         }
+        let whole = match (drive.targets.as_slice(), drive.values.as_slice()) {
+            ([target], [value]) => Some(target.span.to(value.span)),
+            _ => None,
+        };
         for (k, target) in drive.targets.iter().enumerate() {
-            self.drive_axis(context, target, drive.values.get(k));
+            self.drive_axis(context, target, (drive.values.get(k), whole));
         }
     }
 
-    /// Gives an axis its law, which may be missing (and that is reported).
-    fn drive_axis(&mut self, context: &mut Context<'g>, target: &ast::Path, law: Option<&ast::Expression>) {
+    /// Gives an axis its law, which may be missing (and that is reported); with what is said of it, where of it alone.
+    fn drive_axis(
+        &mut self,
+        context: &mut Context<'g>,
+        target: &ast::Path,
+        (law, whole): (Option<&ast::Expression>, Option<Span>),
+    ) {
         let Some((machine, member)) = self.machine_member(context, target, "an axis") else {
             (0..self.machines.len()).for_each(|machine| self.lose_law(machine));
             return;
@@ -58,14 +75,18 @@ impl<'g> Builder<'_, 'g> {
         let value =
             axis.dimension.zip(law).and_then(|(dimension, law)| context.scalar(law, &self.scope, dimension, &what));
         let key = (machine, member.node.clone());
-        if let Some((_, first)) = self.drives.get(&key) {
+        if let Some(first) = self.drives.get(&key) {
             let message = format!("{what} is driven twice");
-            let diagnostic = Diagnostic::new(Code::DrivenTwice, target.span, message).note(*first, "first driven here");
+            let mut diagnostic =
+                Diagnostic::new(Code::DrivenTwice, target.span, message).note(first.place, "first driven here");
+            for said in [whole, first.whole].into_iter().flatten() {
+                diagnostic = diagnostic.rewriting(Rewriting::Statement(said, said));
+            }
             context.report(diagnostic.help("an axis has one law: take one away, or drive it with the sum of both"));
             self.lose_law(machine);
             return;
         }
-        self.drives.insert(key, (value, target.span));
+        self.drives.insert(key, Driven { law: value, place: target.span, whole });
     }
 
     /// A law that gives no axis its motion: an axis without one was perhaps meant, and is no second mistake.
@@ -94,7 +115,7 @@ impl<'g> Builder<'_, 'g> {
                     (Some((law, LawKind::Fix, _)), _) => (*law, LawSource::Fixed),
                     (Some((law, LawKind::Couple, _)), _) => (*law, LawSource::Coupled),
                     (None, _) if axis.is_unknown => (Some(axis.variable), LawSource::Closed),
-                    (None, Some((law, _))) => (*law, LawSource::Driven),
+                    (None, Some(driven)) => (driven.law, LawSource::Driven),
                     (None, None) if self.stands_alone || self.mills.contains(&name.node) => {
                         (Some(axis.variable), LawSource::Free)
                     }
@@ -165,14 +186,14 @@ impl<'g> Builder<'_, 'g> {
     fn written_law(&self, machine: usize, axis: &str) -> Option<Expr<'g>> {
         let built = self.machines[machine].2.axes.iter().find(|built| built.name.node == axis);
         let own = built.and_then(|built| built.law.as_ref()).and_then(|(law, ..)| *law);
-        own.or_else(|| self.drives.get(&(machine, axis.to_string())).and_then(|(law, _)| *law))
+        own.or_else(|| self.drives.get(&(machine, axis.to_string())).and_then(|driven| driven.law))
     }
 
     /// Where an axis gets its law; the machine's name if nowhere.
     fn place_of_law(&self, machine: usize, axis: &str) -> Span {
         let (name, _, built) = &self.machines[machine];
         let own = built.axes.iter().find(|built| built.name.node == axis).and_then(|axis| axis.law.as_ref());
-        let driven = self.drives.get(&(machine, axis.to_string())).map(|(_, span)| *span);
+        let driven = self.drives.get(&(machine, axis.to_string())).map(|driven| driven.place);
         own.map(|(_, _, span)| *span).or(driven).unwrap_or(name.span)
     }
 

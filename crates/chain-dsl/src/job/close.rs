@@ -86,7 +86,7 @@ impl<'g> Builder<'_, 'g> {
             Err(Unsolved::Endless(what)) => (
                 format!("it follows from all places of {what}, which has no range"),
                 if self.stands_alone {
-                    "say where it stands: `at (crank: 30 deg)`".to_owned()
+                    "say where it stands, as in `at (crank: 30 deg)`".to_owned()
                 } else {
                     "give it one: `axis crank : rotary in 0 deg .. 360 deg`".to_owned()
                 },

@@ -37,8 +37,7 @@ impl<'g> Builder<'_, 'g> {
         let wrong = |span: Span, message: String, help: &str| Diagnostic::new(Code::Contact, span, message).help(help);
         let [first, second] = written.surfaces.each_ref();
         if surfaces[0] == surfaces[1] {
-            let help =
-                "name the flank of the mate: `contact drive_side = pinion_flank with gear_flank, over: turn, for: lag`";
+            let help = "name the flank of the mate, as in `contact drive_side = pinion_flank with gear_flank, over: turn, for: lag`";
             context.report(wrong(second.span, format!("`{}` cannot touch itself", second.joined()), help));
             return None;
         }
@@ -98,7 +97,7 @@ impl<'g> Builder<'_, 'g> {
         let missing: Vec<&str> = [0, 1].into_iter().filter(|k| found[*k].is_none()).map(|k| ARGUMENTS[k]).collect();
         if !missing.is_empty() {
             let message = format!("`{}` needs {}", written.name.node, quoted(&missing));
-            let help = "say the motion that the pair rolls by and the unknown that the contact determines: `over: turn, for: lag`";
+            let help = "say the motion that the pair rolls by and the unknown that the contact determines, as in `over: turn, for: lag`";
             context.report(Diagnostic::new(Code::WrongArguments, written.name.span, message).help(help));
             return None;
         }
@@ -191,7 +190,7 @@ impl<'g> Builder<'_, 'g> {
         let found = self.named_motion(context, written, "for")?;
         if !self.unknowns.contains(&found.variable) {
             let message = format!("`{}` is a motion, and no unknown", found.name);
-            let help = "declare what the contact determines: `unknown lag : angle in -1 deg .. 1 deg`";
+            let help = "declare what the contact determines, such as `unknown lag : angle in -1 deg .. 1 deg`";
             context.report(Diagnostic::new(Code::Contact, written.span, message).help(help));
             return None;
         }

@@ -5,6 +5,7 @@ pub(crate) mod sampled;
 
 mod available;
 mod axes;
+mod choices;
 mod close;
 mod contact;
 mod cut;
@@ -12,6 +13,7 @@ mod decisive;
 pub(crate) mod expect;
 mod independence;
 mod mill;
+mod no_surface;
 mod sliding;
 mod solid;
 mod surfaces;
@@ -34,6 +36,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
+use crate::job::axes::Driven;
 use crate::job::decisive::Decisive;
 use crate::job::sampled::SampledPoints;
 use crate::limits;
@@ -84,7 +87,7 @@ struct Builder<'a, 'g> {
     mounts: HashMap<String, (Option<FrameRef>, Span)>,
     /// `mount` statements that mount nothing (and have been reported).
     lost_mounts: usize,
-    drives: HashMap<(usize, String), (Option<Expr<'g>>, Span)>,
+    drives: HashMap<(usize, String), Driven<'g>>,
     /// Laws of each machine that belong to no axis, or to one that has a law already (and have been reported).
     lost_laws: HashMap<usize, usize>,
     laws: Vec<(Expr<'g>, Expr<'g>)>,
@@ -241,7 +244,7 @@ fn with_points<'g>(
         builder.declare(context, statement, &mut binder);
     }
     context.later.clear();
-    binder.finish(context, &[]);
+    binder.finish(context, &job.params());
     builder.parameters = binder.parameters;
     for statement in &job.statements {
         match statement {
@@ -527,61 +530,6 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    fn instance_names(&self) -> Vec<String> {
-        self.machines.iter().map(|(name, ..)| name.node.clone()).collect()
-    }
-
-    /// A machine of the job and the name behind the dot.
-    fn machine_member<'p>(
-        &self,
-        context: &mut Context<'g>,
-        path: &'p ast::Path,
-        what: &str,
-    ) -> Option<(usize, &'p Name)> {
-        // the parser has reported a missing name
-        if path.segments.iter().any(|segment| segment.node.is_empty()) {
-            return None;
-        }
-        let [machine, member] = path.segments.as_slice() else {
-            let names = self.instance_names();
-            let message = format!("{what} is named together with its machine");
-            let help = match path.segments.as_slice() {
-                [machine, member, ..] => format!("write `{}.{}`", machine.node, member.node),
-                [own] if names.contains(&own.node) => format!("write `{}.` and the name of {what}", own.node),
-                [own] if self.names.contains_key(&own.node) => {
-                    format!("write `{}.` and the name of {what}", names.first().map_or("m", String::as_str))
-                }
-                [own] => format!("write `{}.{}`", names.first().map_or("m", String::as_str), own.node),
-                [] => "write `m.name`".to_owned(),
-            };
-            let diagnostic = Diagnostic::new(Code::WrongKind, path.span, message);
-            context.report(match path.segments.as_slice() {
-                [machine, member, _, ..] => diagnostic.writing(path.span, &format!("{}.{}", machine.node, member.node)),
-                [own] if !self.names.contains_key(&own.node) && !names.is_empty() => {
-                    diagnostic.writing(path.span, &format!("{}.{}", names[0], own.node))
-                }
-                _ => diagnostic.help(help),
-            });
-            return None;
-        };
-        match self.machines.iter().position(|(name, ..)| name.node == machine.node) {
-            Some(index) => Some((index, member)),
-            None if self.names.contains_key(&machine.node) && self.is_broken_machine(machine) => None,
-            None => {
-                let names = self.instance_names();
-                context.unknown(machine, "machine", names.iter().map(String::as_str));
-                None
-            }
-        }
-    }
-
-    /// True for a name that stands for something that could not be built (which has been reported).
-    fn is_broken_machine(&self, name: &Name) -> bool {
-        !self.scope.contains_key(&name.node)
-            && !self.tools.iter().any(|(tool, ..)| tool.node == name.node)
-            && !self.surfaces.iter().any(|(surface, _)| available::is_of(&surface.name, &name.node))
-    }
-
     fn frame(&self, context: &mut Context<'g>, path: &ast::Path) -> Option<FrameRef> {
         let (machine, member) = self.machine_member(context, path, "a frame")?;
         let built = &self.machines[machine].2;
@@ -607,7 +555,7 @@ impl<'g> Builder<'_, 'g> {
         if let Some((_, first)) = self.mounts.get(&name.node) {
             let message = format!("`{}` is mounted twice", name.node);
             let first = *first;
-            let help = format!("a tool on a second frame has a second name: `tool other = {}`", name.node);
+            let help = format!("a tool on a second frame has a second name, such as `tool other = {}`", name.node);
             context
                 .report(Diagnostic::new(Code::DuplicateName, name.span, message).note(first, "first here").help(help));
             self.lost_mounts += 1;

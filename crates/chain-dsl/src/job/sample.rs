@@ -348,7 +348,7 @@ fn listed<'g>(
     }
     let (Some(first), Some(last)) = (exprs.first(), exprs.last()) else {
         let message = format!("{what} has no values");
-        let help = "list them, or give a range: `z: -5 mm .. 5 mm by 11`";
+        let help = "list them, or give a range such as `z: -5 mm .. 5 mm by 11`";
         context.report(Diagnostic::new(Code::SampleShape, written.span, message).help(help));
         return None;
     };
@@ -420,13 +420,13 @@ fn outline<'g>(
     if !missing.is_empty() {
         let verb = if missing.len() == 1 { "is" } else { "are" };
         let message = format!("an outline has four corners: {} {verb} missing", quoted(&missing));
-        let help = "a corner is `[z, rho]`: `toe_root: [92 mm, 25.7 mm]`";
+        let help = "a corner has its `z` and `rho`, as in `toe_root: [92 mm, 25.7 mm]`";
         context.report(Diagnostic::new(Code::SampleShape, path.span, message).help(help));
         return None;
     }
     let (Some((profile, profile_ends)), Some((length, length_ends))) = (profile, length) else {
         let message = "an outline is divided twice: `profilewise` from root to tip, `lengthwise` from toe to heel";
-        let help = "give both as shares: `profilewise: 0.05 .. 0.95 by 9`, `lengthwise: 0.05 .. 0.95 by 15`";
+        let help = "give both as shares, such as `profilewise: 0.05 .. 0.95 by 9`, `lengthwise: 0.05 .. 0.95 by 15`";
         context.report(Diagnostic::new(Code::SampleShape, path.span, message).help(help));
         return None;
     };

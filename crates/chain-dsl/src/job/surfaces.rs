@@ -306,7 +306,7 @@ impl<'g> Builder<'_, 'g> {
         let [Some(index), Some(other)] = found else { return };
         let wrong = |message: String, help: &str| Diagnostic::new(Code::Trim, by.span, message).help(help);
         if index == other {
-            let help = "name the surface that cuts into it: `trim flank by fillet`";
+            let help = "name the surface that cuts into it, as in `trim flank by fillet`";
             return context.report(wrong(format!("`{}` cannot trim itself", by.joined()), help));
         }
         if let Some(message) = self.two_frames([surface, by], [index, other]) {

@@ -8,6 +8,35 @@ use std::sync::Arc;
 
 use crate::load::tidy;
 
+/// A file or a folder in a folder.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct FolderEntry {
+    /// Without the path to it.
+    pub name: String,
+    /// Whether it is a folder.
+    pub is_folder: bool,
+}
+
+impl FolderEntry {
+    /// What a folder holds where texts in memory lie over it, in folders that need not be there.
+    pub fn with_texts<'t>(
+        mut entries: Vec<FolderEntry>,
+        folder: &Path,
+        texts: impl Iterator<Item = &'t PathBuf>,
+    ) -> Vec<FolderEntry> {
+        for inside in texts.filter_map(|text| text.strip_prefix(folder).ok()) {
+            let mut parts = inside.components();
+            let name = parts.next().map(|first| first.as_os_str().to_string_lossy().into_owned());
+            if let Some(name) = name.filter(|name| !name.starts_with('.')) {
+                entries.push(FolderEntry { name, is_folder: parts.next().is_some() });
+            }
+        }
+        entries.sort();
+        entries.dedup();
+        entries
+    }
+}
+
 /// What a compilation reads its texts from.
 pub trait Files: Debug + Send + Sync {
     /// The path of a plain file or a folder, without links and `..`.
@@ -24,6 +53,11 @@ pub trait Files: Debug + Send + Sync {
     /// # Errors
     /// Of the kind [`ErrorKind::FileTooLarge`] if it has more, of the kind [`ErrorKind::InvalidData`] if it is not UTF-8.
     fn read(&self, real: &Path, most: usize) -> Result<String>;
+
+    /// What a folder holds in the order of names, without what is hidden, of so many that are looked at; nothing where it cannot be looked into.
+    fn entries(&self, _folder: &Path, _most: usize) -> Vec<FolderEntry> {
+        Vec::new()
+    }
 }
 
 /// The files of the system.
@@ -46,6 +80,22 @@ impl Files for Disk {
         let mut text = String::new();
         std::fs::File::open(real)?.take((most as u64).saturating_add(1)).read_to_string(&mut text)?;
         limited(text, most)
+    }
+
+    fn entries(&self, folder: &Path, most: usize) -> Vec<FolderEntry> {
+        let all = std::fs::read_dir(folder).into_iter().flatten().take(most).filter_map(Result::ok);
+        let shown = all.filter_map(|entry| {
+            let name = entry.file_name().into_string().ok().filter(|name| !name.starts_with('.'))?;
+            // what a link leads to
+            let is_folder = match entry.file_type().ok()? {
+                kind if kind.is_symlink() => entry.path().is_dir(),
+                kind => kind.is_dir(),
+            };
+            Some(FolderEntry { name, is_folder })
+        });
+        let mut shown: Vec<FolderEntry> = shown.collect();
+        shown.sort();
+        shown
     }
 }
 
@@ -92,6 +142,11 @@ impl Files for Buffers {
             Some(text) => limited(text.clone(), most),
             None => self.below.read(real, most),
         }
+    }
+
+    fn entries(&self, folder: &Path, most: usize) -> Vec<FolderEntry> {
+        let folder = self.place(folder);
+        FolderEntry::with_texts(self.below.entries(&folder, most), &folder, self.texts.keys())
     }
 }
 

@@ -1,6 +1,7 @@
 //! Reading a file and the files that it uses.
 
 pub(crate) mod files;
+mod nearest;
 mod parsed;
 
 use std::collections::HashMap;
@@ -147,7 +148,7 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
 
 /// The nearest folder above a file, given without links, that holds a `.git` or a `flank.toml`; else the folder above that of the
 /// file. It is the same from wherever the program is called.
-fn project_folder(from: &dyn Files, real: &Path) -> PathBuf {
+pub fn project_folder(from: &dyn Files, real: &Path) -> PathBuf {
     let is_marked = |folder: &&Path| [".git", "flank.toml"].iter().any(|mark| from.exists(&folder.join(mark)));
     let mut above = real.ancestors().skip(1);
     let folder = above.clone().find(is_marked).or_else(|| above.nth(1));
@@ -206,7 +207,7 @@ impl Loader {
             Err(_) if !tidy(&here.join(&used.node)).starts_with(&self.project) => {
                 return self.outside(used);
             }
-            Err(error) => return self.unreadable(&shown, &error, Some(used.span)),
+            Err(error) => return self.missing(&error, [&shown, here], used),
         };
         if !real.starts_with(&self.project) {
             return self.outside(used);
@@ -239,14 +240,27 @@ impl Loader {
         self.loaded.diagnostics.push(Diagnostic::new(Code::OutsideProject, used.span, message).help(help));
     }
 
+    /// A file that is used and cannot be found, perhaps by a slip in its path.
+    fn missing(&mut self, error: &std::io::Error, [shown, here]: [&Path; 2], used: &Name) {
+        self.loaded.lacks_files = true;
+        let mut diagnostic = unreadable(error, shown, used.span);
+        if error.kind() == ErrorKind::NotFound {
+            let meant = nearest::nearest(&*self.loaded.from, here, &used.node);
+            let meant = meant.filter(|meant| tidy(&here.join(meant)).starts_with(&self.project));
+            diagnostic = match meant {
+                Some(meant) => diagnostic
+                    .help(format!("did you mean `{meant}`? the path starts from the folder of this file"))
+                    .cure(format!("write `{meant}`"), used.span, format!("\"{meant}\"")),
+                None => diagnostic.help("the path starts from the folder of the file that says `use`"),
+            };
+        }
+        self.loaded.diagnostics.push(diagnostic);
+    }
+
     fn unreadable(&mut self, shown: &Path, error: &std::io::Error, used_at: Option<Span>) {
         self.loaded.lacks_files |= used_at.is_some();
         let span = self.place(shown, used_at);
-        let mut diagnostic = unreadable(error, shown, span);
-        if used_at.is_some() && error.kind() == ErrorKind::NotFound {
-            diagnostic = diagnostic.help("the path starts from the folder of the file that says `use`");
-        }
-        self.loaded.diagnostics.push(diagnostic);
+        self.loaded.diagnostics.push(unreadable(error, shown, span));
     }
 
     /// Where a file is asked for; the start of an empty text of its own if on the command line.

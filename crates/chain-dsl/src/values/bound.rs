@@ -40,7 +40,7 @@ impl<'g> Context<'g> {
     /// A range with a name that stands where no name is bound.
     pub(super) fn unbound(&mut self, bound: &Bound, span: Span) -> Value<'g> {
         let message = format!("`{} in … : …` is no value by itself", bound.name.node);
-        let help = "it is what a sum, an integral or a root runs over: `sum(k in 1 .. n: …)`";
+        let help = "it is what a sum, an integral or a root runs over, as in `sum(k in 1 .. n: …)`";
         self.report(Diagnostic::new(Code::WrongArguments, span, message).help(help));
         Value::Poison
     }

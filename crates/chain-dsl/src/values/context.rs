@@ -527,7 +527,7 @@ pub(crate) fn suggesting<'a>(
     name: &Name,
     known: impl Iterator<Item = &'a str>,
 ) -> Diagnostic {
-    let known: Vec<&str> = known.collect();
+    let known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
     diagnostic.help = did_you_mean(&name.node, known.iter().copied());
     // of those alike, the one that the sentence names
     let meant = diagnostic.help.as_deref().and_then(|help| help.strip_prefix("did you mean `")?.strip_suffix("`?"));
@@ -537,15 +537,28 @@ pub(crate) fn suggesting<'a>(
             let mut known = known;
             known.sort_unstable();
             known.dedup();
-            let few = known.iter().filter(|choice| !choice.is_empty() && known.len() <= READABLE);
+            let few = known.iter().filter(|_| known.len() <= READABLE);
             few.fold(diagnostic, |diagnostic, choice| diagnostic.cure(format!("write `{choice}`"), name.span, *choice))
         }
     }
 }
 
+/// The same about a word somewhere in the place of the finding.
+pub(crate) fn suggesting_word<'a>(
+    diagnostic: Diagnostic,
+    word: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> Diagnostic {
+    let place = diagnostic.span;
+    let mut suggested = suggesting(diagnostic, &Name { node: word.to_string(), span: place }, known);
+    let choices: Vec<String> = suggested.cures.drain(..).map(|cure| cure.replacement).collect();
+    let word = |choice| Rewriting::Word(place, word.to_string(), choice);
+    choices.into_iter().fold(suggested, |suggested, choice| suggested.rewriting(word(choice)))
+}
+
 /// The nearest of the known names, as a sentence.
 pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
-    let mut known: Vec<&str> = known.collect();
+    let mut known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
     known.sort_unstable();
     known.dedup();
     match closest(name, known.iter().copied()) {

@@ -509,7 +509,7 @@ impl<'g> Context<'g> {
     fn outside_profile(&mut self, call: &ast::Call) -> Value<'g> {
         let name = &call.function.node;
         let message = format!("which segment of `{name}` is meant shows only in a surface along it");
-        let help = format!("give the surface a parameter `s: along {name}`");
+        let help = format!("give the surface a parameter such as `s: along {name}`");
         self.report(Diagnostic::new(Code::WrongKind, call.function.span, message).help(help));
         Value::Poison
     }

@@ -66,8 +66,12 @@ pub(crate) struct Seen {
     undefined: usize,
     /// Points without a normal.
     flat: usize,
-    /// The greatest component of a normal that was seen last: its index and sign.
-    normal: Option<(usize, f64)>,
+    /// Points with a normal.
+    whole: usize,
+    /// Of the points with a normal, along each axis, how many have a normal that points forward, and how many backward.
+    along: [[usize; 2]; 3],
+    /// The least that a normal has along each axis, as a share of its length.
+    least: [f64; 3],
 }
 
 /// The place of an unknown among the inputs of a tape, if it stands there, and its range.
@@ -117,7 +121,7 @@ impl Seen {
 
     /// No point had a normal.
     pub(crate) fn is_flat(&self) -> bool {
-        self.normal.is_none()
+        self.whole == 0
     }
 
     /// The direction lay in the surface at all points.
@@ -133,18 +137,28 @@ impl Seen {
         } else if length < NO_AREA {
             self.flat += 1;
         } else {
-            let greatest = (0..3).max_by(|&a, &b| normal[a].abs().total_cmp(&normal[b].abs()));
-            self.normal = greatest.map(|index| (index, normal[index].signum()));
+            for (k, part) in normal.iter().map(|part| part / length).enumerate() {
+                self.along[k][0] += usize::from(part > 1e-9);
+                self.along[k][1] += usize::from(part < -1e-9);
+                self.least[k] = if self.whole == 0 { part.abs() } else { self.least[k].min(part.abs()) };
+            }
+            self.whole += 1;
             let cosine = along / (length * norm(outward));
             self.out += usize::from(cosine > 1e-9);
             self.into += usize::from(cosine < -1e-9);
         }
     }
 
-    /// A direction along an axis that leaves the surface: `[0, 1, 0]`.
-    pub(crate) fn example(&self) -> String {
-        let (index, sign) = self.normal.unwrap_or((2, -1.0));
-        let parts: Vec<String> = (0..3).map(|k| if k == index { sign.to_string() } else { "0".to_string() }).collect();
-        format!("`body towards [{}]` or its opposite", parts.join(", "))
+    /// A direction along an axis that leaves the surface everywhere, the steepest of them, and its opposite: `body towards [0, 1, 0]`. None
+    /// where the surface goes too far around.
+    pub(crate) fn examples(&self) -> Option<[String; 2]> {
+        let leaves = |k: &usize| self.along[*k].contains(&self.whole) && self.whole > 0;
+        let index = (0..3).filter(leaves).max_by(|&a, &b| self.least[a].total_cmp(&self.least[b]))?;
+        let towards = |sign: i32| {
+            let parts: Vec<String> = (0..3).map(|k| if k == index { sign } else { 0 }.to_string()).collect();
+            format!("body towards [{}]", parts.join(", "))
+        };
+        let sign = if self.along[index][0] > 0 { 1 } else { -1 };
+        Some([towards(sign), towards(-sign)])
     }
 }

@@ -1,16 +1,14 @@
 //! Changes of the text: each one that a finding offers mends it, and whatever names a change in words offers it.
 
-use std::collections::BTreeSet;
 use std::path::Path;
+use std::sync::Arc;
 
-use flank_chain_dsl::{Code, Cure, Diagnostic, compile_text};
+use flank_chain_dsl::{Buffers, Code, Cure, Diagnostic, Disk, Request, compile_request, compile_text};
 use flank_expr::Graph;
 
 use crate::LIBRARY;
+use crate::files::project;
 use crate::fixtures::{TITLE, is_remark};
-
-/// What is said where no change of the text follows from it: names of one's own, values that only the user knows, a choice.
-const WORDS_ALONE: &str = "tests/meaning/helps_without_changes.txt";
 
 fn folder(name: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
@@ -63,20 +61,33 @@ fn unread(all: &[Diagnostic]) -> usize {
     all.iter().filter(|found| found.code == Code::Syntax).count()
 }
 
-/// Without what stands between backquotes, of lists once.
-fn pattern(help: &str) -> String {
-    let parts: Vec<&str> = help.split('`').collect();
-    let plain = parts.iter().enumerate().map(|(k, part)| if k % 2 == 0 { part } else { &"`…`" });
-    let mut plain: String = plain.copied().collect();
-    while plain.contains("`…`, `…`") {
-        plain = plain.replace("`…`, `…`", "`…`");
+/// Whether a help tells words that could be written as they stand. What is an example says so, what the user has to fill in is a `…`, and
+/// a word alone names something.
+fn names_a_change(help: &str) -> bool {
+    const IMPERATIVE: [&str; 5] = ["write `", "did you mean `", "there is: `", "leave `", "add `"];
+    const OF_EXAMPLES: [&str; 5] = ["for example ", "such as ", "as in ", ", as ", "an "];
+    let quoted: Vec<&str> = help.split('`').collect();
+    if IMPERATIVE.iter().any(|begins| help.starts_with(begins)) && !quoted[1].contains('…') {
+        return true;
     }
-    plain
+    let mut is_example = false;
+    for pair in quoted.chunks_exact(2) {
+        let (before, words) = (pair[0], pair[1]);
+        is_example = match before.trim_matches([',', ' ']) {
+            "" | "or" | "and" => is_example,
+            _ => OF_EXAMPLES.iter().any(|word| before.ends_with(word)),
+        };
+        let is_word = words.chars().all(|letter| letter.is_alphanumeric() || "_.:+-*/^={}[]()".contains(letter));
+        if !is_example && !is_word && !words.contains('…') {
+            return true;
+        }
+    }
+    false
 }
 
 #[test]
-fn every_change_mends_what_offers_it_and_other_helps_name_none() {
-    let (mut wrong, mut changes, mut alone) = (Vec::new(), 0, BTreeSet::new());
+fn every_change_mends_what_offers_it_and_every_help_that_names_one_offers_it() {
+    let (mut wrong, mut changes) = (Vec::new(), 0);
     for text in wrong_texts() {
         let before = found(&text);
         for finding in &before {
@@ -88,22 +99,48 @@ fn every_change_mends_what_offers_it_and_other_helps_name_none() {
                 }
                 changes += 1;
             }
-            if let (Some(help), true) = (&finding.help, finding.cures.is_empty()) {
-                alone.insert(format!("{} {}", finding.code.as_str(), pattern(help)));
+            if let Some(help) = finding.help.as_ref().filter(|help| finding.cures.is_empty() && names_a_change(help)) {
+                wrong.push(format!(
+                    "{} {}\nhelp without its change: {help}\n{text}",
+                    finding.code.as_str(),
+                    finding.message
+                ));
             }
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n\n"));
     assert!(changes > 100, "{changes}");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(WORDS_ALONE);
-    let said: String = alone.into_iter().map(|line| line + "\n").collect();
-    if std::env::var_os("UPDATE_MISTAKES").is_some() {
-        std::fs::write(&path, said).expect("a writable file");
-    } else {
-        let expected = std::fs::read_to_string(&path).expect("the list");
-        assert_eq!(
-            said, expected,
-            "a help that names a change offers it as one; what names none stands in {WORDS_ALONE}"
-        );
+}
+
+/// What is offered for a `use` in `jobs/gear.chain`, among files on the disk and texts that are nowhere but in memory.
+fn meant_by(used: &str) -> Option<String> {
+    let on_disk = [("machines/hobbing/lathe.chain", ""), ("machines/planer.chain", ""), ("machines/notes.txt", "")];
+    let folder = project("slips", &on_disk);
+    let main = folder.join("jobs/gear.chain");
+    let files = Buffers::over(Arc::new(Disk))
+        .with(&main, format!("use \"{used}\""))
+        .with(&folder.join("jobs/blank.chain"), "")
+        .with(&folder.join("../beside.chain"), "");
+    let graph = Graph::new();
+    let compilation = compile_request(&graph, &main, &Request { files: Arc::new(files), ..Request::default() });
+    let finding = compilation.diagnostics.iter().find(|found| found.code == Code::UnreadableFile).expect("a finding");
+    assert_eq!(finding.help.as_ref().expect("a help").contains("did you mean"), !finding.cures.is_empty());
+    finding.cures.first().map(|cure| cure.replacement.clone())
+}
+
+#[test]
+fn a_slip_in_a_path_is_mended_by_the_nearest_file() {
+    std::fs::create_dir_all(project("slips", &[]).join("jobs")).expect("a folder");
+    for (used, meant) in [
+        ("../mahcines/planer.chain", "../machines/planer.chain"),
+        ("../machines/planar.chain", "../machines/planer.chain"),
+        ("../machine/hobing/lahte.chain", "../machines/hobbing/lathe.chain"),
+        ("../machines/planer", "../machines/planer.chain"),
+        ("blanc.chain", "blank.chain"),
+    ] {
+        assert_eq!(meant_by(used), Some(format!("\"{meant}\"")), "{used}");
+    }
+    for used in ["../machines/spindle.chain", "../machines/notes", "../tools/planer.chain", "../machines/", ""] {
+        assert_eq!(meant_by(used), None, "{used}");
     }
 }

@@ -192,6 +192,18 @@ impl Client {
         }
     }
 
+    /// What is told of a text until whatever reads it has been compiled, too, which waits for the editor to be quiet: versions and the number of
+    /// findings.
+    pub fn told_meanwhile(&mut self, uri: &str) -> Vec<(Option<i32>, usize)> {
+        std::thread::sleep(Duration::from_millis(700));
+        let mut all = Vec::new();
+        while let Ok(message) = self.from.try_recv() {
+            self.keep(message);
+            all.extend(self.told.remove(uri).map(|told| (told.version, told.diagnostics.len())));
+        }
+        all
+    }
+
     /// The next error that answers to nothing.
     pub fn other_error(&mut self) -> Value {
         let end = Instant::now() + PATIENCE;

@@ -76,6 +76,22 @@ fn the_words_of_shipped_specs_are_proposed_behind_their_first_letter() {
     assert!(share < 0.01, "{} of {words}:\n{missing:#?}", missing.len());
 }
 
+#[test]
+fn proposals_take_the_place_of_what_stands_before_the_cursor() {
+    for spec in [SPECS[5], SPECS[7]] {
+        let path = top().join(spec).canonicalize().expect("it is shipped");
+        let text = std::fs::read_to_string(&path).expect("UTF-8");
+        let analysis = analysed(&path, &text);
+        let places: Vec<usize> = (0..=text.len()).filter(|at| text.is_char_boundary(*at)).collect();
+        places.par_iter().for_each(|&at| {
+            for proposal in analysis.completions(at) {
+                let replaced = &text[proposal.replaces.start..at];
+                assert!(replaced.chars().all(|letter| letter.is_alphanumeric() || letter == '_'), "{spec}: {replaced}");
+            }
+        });
+    }
+}
+
 const MACHINE: &str = "machine lathe {
     param depth : length = 2 mm
     axis X : linear

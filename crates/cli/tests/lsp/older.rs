@@ -100,13 +100,14 @@ fn what_users_found_in_an_older_text_is_not_told_of_a_newer_one() {
         client.open(reader_uri, reader);
         client.findings(reader_uri);
     }
-    assert_eq!(client.findings(uri).diagnostics.len(), 1, "each of them finds the same");
-    client.told.clear();
+    assert_eq!(client.told_meanwhile(uri), [], "each of them finds the same");
     client.change(uri, json!([{ "text": format!("// a line more\n{machine}") }]));
     assert!(client.findings(uri).diagnostics.is_empty());
+    assert_eq!(client.told_meanwhile(uri), []);
     for reader_uri in &readers {
-        assert!(client.findings(reader_uri).diagnostics.is_empty());
-        assert!(client.told.remove(uri).is_none_or(|told| told.diagnostics.is_empty()));
+        let at = json!({ "textDocument": { "uri": reader_uri }, "position": { "line": 2, "character": 24 } });
+        let defined = client.ask("textDocument/definition", at).expect("an answer");
+        assert_eq!(defined["range"]["start"]["line"], json!(1), "each of them reads the text as it is now");
     }
     assert_eq!(client.end(), Some(0));
 }

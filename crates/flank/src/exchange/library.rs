@@ -2,9 +2,9 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use flank_chain_dsl::FileId;
 use flank_chain_dsl::syntax::ast::Item;
 use flank_chain_dsl::syntax::parse;
+use flank_chain_dsl::{FileId, FolderEntry};
 use include_dir::{Dir, include_dir};
 
 use crate::project::shown_path;
@@ -31,6 +31,19 @@ pub(crate) fn text(path: &Path) -> Option<&'static str> {
 /// Whether there is such a folder.
 pub(crate) fn has_folder(path: &Path) -> bool {
     path.as_os_str().is_empty() || LIBRARY.get_dir(path).is_some()
+}
+
+/// What a folder of the library holds.
+pub(crate) fn entries(path: &Path) -> Vec<FolderEntry> {
+    let Some(folder) = (if path.as_os_str().is_empty() { Some(&LIBRARY) } else { LIBRARY.get_dir(path) }) else {
+        return Vec::new();
+    };
+    let entry = |path: &Path, is_folder| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        FolderEntry { name, is_folder }
+    };
+    let folders = folder.dirs().map(|inner| entry(inner.path(), true));
+    folders.chain(folder.files().map(|file| entry(file.path(), false))).collect()
 }
 
 fn files(folder: &'static Dir<'static>) -> impl Iterator<Item = (&'static Path, &'static str)> {

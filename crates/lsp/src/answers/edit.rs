@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use flank::{Completion, CompletionKind, NameKind, TextEdit as Edit, lay_out};
+use flank::{Completion, CompletionKind, NameKind, PathCompletions, TextEdit as Edit, lay_out};
 use gen_lsp_types::{
     CodeAction, CodeActionKind, CodeActionParams, CodeActionResponse, Command, CompletionItem, CompletionItemKind,
     CompletionItemTextEdit, CompletionList, CompletionParams, CompletionResponse, DocumentFormattingParams,
@@ -20,14 +20,21 @@ use crate::uri::{ERRORS, LIBRARY};
 pub(crate) fn completion(snapshot: &Snapshot, params: CompletionParams) -> Option<CompletionResponse> {
     let at = params.text_document_position_params;
     let opened = snapshot.opened(&at.text_document.uri)?;
-    let found = opened.analysis.completions(opened.offset(at.position));
+    let offset = opened.offset(at.position);
+    let paths = opened.analysis.path_completions(offset, &snapshot.documents);
+    // signs that paths have are typed elsewhere, too
+    let asked_by = params.context.and_then(|context| context.trigger_character);
+    let is_of_path = asked_by.is_some_and(|sign| ["\"", "/"].contains(&sign.as_str()));
+    let paths = paths.or_else(|| is_of_path.then(PathCompletions::default));
+    let is_incomplete = paths.as_ref().is_some_and(|paths| paths.is_part);
+    let found = paths.map_or_else(|| opened.analysis.completions(offset), |paths| paths.found);
     let lines = opened.lines();
     let items = found
         .iter()
         .enumerate()
         .map(|(rank, proposal)| item(proposal, rank, &lines, snapshot.options.snippets))
         .collect();
-    let list = CompletionList { is_incomplete: false, item_defaults: None, apply_kind: None, items };
+    let list = CompletionList { is_incomplete, item_defaults: None, apply_kind: None, items };
     Some(CompletionResponse::CompletionList(list))
 }
 
@@ -54,6 +61,8 @@ fn item_kind(kind: CompletionKind) -> CompletionItemKind {
         CompletionKind::Unit => CompletionItemKind::Unit,
         CompletionKind::Setting => CompletionItemKind::Property,
         CompletionKind::Snippet => CompletionItemKind::Snippet,
+        CompletionKind::File => CompletionItemKind::File,
+        CompletionKind::Folder => CompletionItemKind::Folder,
         CompletionKind::Function | CompletionKind::Name(NameKind::Function) => CompletionItemKind::Function,
         CompletionKind::Name(NameKind::Machine | NameKind::Tool | NameKind::Job) => CompletionItemKind::Class,
         CompletionKind::Name(NameKind::Parameter | NameKind::MachineError) => CompletionItemKind::Property,

@@ -172,7 +172,7 @@ impl Pose<'_> {
         let open = open.map_or("a setting", |setting| setting.name.as_str());
         let message = format!("the pose of `{}` is not a number: {open} has no value", frame.node);
         let place = self.at.first().map_or(frame.span, |argument| argument.value.span);
-        wrong(context, place, message, "give axes and settings their values: `at (X: 10 mm, tilt: 3 deg)`");
+        wrong(context, place, message, "give axes and settings their values, as in `at (X: 10 mm, tilt: 3 deg)`");
         None
     }
 

@@ -13,7 +13,7 @@ use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
 use crate::model::RangedVariable;
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
-use crate::values::context::{Context, Role, did_you_mean};
+use crate::values::context::{Context, Role, suggesting_word};
 use crate::values::dimension::{Dimension, shown};
 use crate::values::value::{Scope, Value};
 
@@ -113,7 +113,7 @@ impl<'g> Builder<'_, 'g> {
             return Some(within);
         }
         let message = format!("a tolerance is above zero, this is {}", shown(within, dimension));
-        wrong(context, written.span, message, "say by how much the value may differ: `within 1 um`");
+        wrong(context, written.span, message, "say by how much the value may differ, such as `within 1 um`");
         None
     }
 
@@ -166,7 +166,7 @@ impl<'g> Builder<'_, 'g> {
         let at = match at {
             None => Vec::new(),
             Some(at) if is_all => {
-                let help = "name the surface: `expect flank undercut at [46 mm, 0 mm]`";
+                let help = "name the surface, as in `expect flank undercut at [46 mm, 0 mm]`";
                 wrong(context, at.span, "points are those of one surface".to_string(), help);
                 return None;
             }
@@ -206,7 +206,7 @@ impl<'g> Builder<'_, 'g> {
     fn no_place<T>(&self, context: &mut Context<'g>, at: &ast::Expression, [one, other]: &[String; 2]) -> Option<T> {
         if !matches!(at.kind, ExpressionKind::Error) {
             let message = "a place is given by the two coordinates of the sample".to_string();
-            wrong(context, at.span, message, format!("write `at [{one}, {other}]` with their values"));
+            wrong(context, at.span, message, format!("give the values of both, as in `at [{one}, {other}]`"));
         }
         None
     }
@@ -408,9 +408,8 @@ pub(crate) fn check_others<'e, 'g: 'e>(
         };
         for name in named.into_iter().filter(|name| !known.contains(name)) {
             let message = format!("there is no surface `{name}` in this file");
-            let mut diagnostic = Diagnostic::new(Code::UnknownName, expectation.written, message);
-            diagnostic.help = did_you_mean(name, known.iter().map(String::as_str));
-            context.report(diagnostic);
+            let diagnostic = Diagnostic::new(Code::UnknownName, expectation.written, message);
+            context.report(suggesting_word(diagnostic, name, known.iter().map(String::as_str)));
         }
     }
 }

@@ -24,6 +24,15 @@ pub struct Job {
 }
 
 impl Job {
+    /// Its own parameters.
+    pub(crate) fn params(&self) -> Vec<&Param> {
+        let each = self.statements.iter().map(|statement| match statement {
+            JobStatement::Param(param) => Some(param),
+            _ => None,
+        });
+        each.flatten().collect()
+    }
+
     /// Shows the parts of all expressions but of those that it is tested by, in the order in which they are evaluated.
     pub(crate) fn each<'e>(&'e self, show: &mut impl FnMut(&'e Expression)) {
         let turn = |statement: &JobStatement| match statement {

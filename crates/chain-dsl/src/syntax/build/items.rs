@@ -67,7 +67,11 @@ impl Build<'_> {
         // what is too long for a number is too long for any vector
         let size = pair.as_str().parse().unwrap_or(usize::MAX);
         if size == 0 {
-            self.report(self.span(&pair), "a vector has at least one element", "`length[3]` is three lengths");
+            self.report(
+                self.span(&pair),
+                "a vector has at least one element",
+                "say how many, such as `length[3]` for three lengths",
+            );
         }
         size
     }

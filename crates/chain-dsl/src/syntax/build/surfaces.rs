@@ -115,11 +115,17 @@ impl Build<'_> {
         let place = name.span;
         if at.is_none() && !broken {
             let message = format!("the surface `{}` does not say where its points are", shorten(&name.node));
-            self.report(place, message, "add `at = [x, y, z]`");
+            self.report(place, message, "say where they are, as in `at = [x, y, z]`");
         }
         if body.is_none() && !broken {
             let message = format!("the surface `{}` does not say on which side the steel is", shorten(&name.node));
-            self.report(place, message, "add `body inside`, `body outside`, `body towards [x, y, z]` or, of three parameters, `body where u^2 + v^2 < r^2`");
+            let help = "say it by `body …`, such as `body inside`, `body outside`, `body towards [x, y, z]` or, of three parameters, `body where u^2 + v^2 < r^2`";
+            let mut diagnostic = Diagnostic::new(Code::Syntax, place, message).help(help);
+            for (at, body) in at.iter().flat_map(|at| ["body inside", "body outside"].map(|body| (at, body))) {
+                let behind = Span { start: at.span.end, ..at.span };
+                diagnostic = diagnostic.cure(format!("add `{body}`"), behind, format!("\n        {body}"));
+            }
+            self.diagnostics.push(diagnostic);
         }
         let error = Expression { kind: ExpressionKind::Error, span: place };
         let at = at.unwrap_or_else(|| error.clone());

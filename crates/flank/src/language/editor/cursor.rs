@@ -24,7 +24,7 @@ pub(super) struct Cursor<'t> {
     pub(super) calls: Vec<Call<'t>>,
     /// Whether a statement may begin here.
     pub(super) is_beginning: bool,
-    /// Whether it lies within a comment or a text.
+    /// Whether it lies within a comment, a text, a number or a sign.
     pub(super) is_quiet: bool,
 }
 
@@ -75,7 +75,10 @@ impl<'t> Cursor<'t> {
                 cursor.close(text, &all, end);
                 break;
             }
-            if token.kind == TokenKind::Text && is_within(&text[start..end], offset - start) {
+            // within a number or a sign nothing begins
+            let is_inside =
+                offset < end || (token.kind == TokenKind::Text && is_within(&text[start..end], offset - start));
+            if is_inside {
                 cursor.is_quiet = true;
                 return cursor;
             }
@@ -262,5 +265,7 @@ mod tests {
         assert!(at("use \"a|b\"").is_quiet);
         assert!(at("use \"ma|").is_quiet && at("use \"|").is_quiet);
         assert!(!at("use \"a\" |").is_quiet);
+        assert!(at("let x = 1|0 mm").is_quiet && at("u: 1 mm .|. 2 mm").is_quiet);
+        assert!(!at("u: 1 mm ..| 2 mm").is_quiet && !at("let x = a.|b").is_quiet);
     }
 }

@@ -1,6 +1,6 @@
 //! From a name to where it is defined, and to all its uses.
 
-use flank_chain_dsl::{Span, SymbolId, Target};
+use flank_chain_dsl::{Span, SymbolId, Target, WordKind};
 
 use crate::language::editor::analysis::{Analysis, TextSpan};
 use crate::language::editor::shipped;
@@ -15,15 +15,23 @@ pub struct Reference {
 }
 
 impl Analysis {
-    /// Where the name at a byte of the spec is defined; in the shipped library, where no file of the project does.
+    /// Where the name at a byte of the spec is defined; in the shipped library, where no file of the project does. What is known of a contact or
+    /// a solid, as `drive_side.lag`, comes with it.
     pub fn definition(&self, offset: usize) -> Option<TextSpan> {
         let entry = self.index.at(self.main, offset as u32)?;
         match entry.target {
             Target::Symbol(id) => self.text_span(self.index.symbol(id).name),
             Target::File(file) => self.text_span(Span { file, start: 0, end: 0 }),
+            Target::Word(WordKind::Number) => self.definition(self.owner(entry.span)?),
             Target::Word(_) => None,
             Target::Missing(kind) => shipped::definition(self.sources.text(entry.span), kind),
         }
+    }
+
+    /// Where the name stands whose dot is before a place.
+    fn owner(&self, span: Span) -> Option<usize> {
+        let before = self.text().get(..span.start as usize)?.trim_end().strip_suffix('.')?.trim_end();
+        Some(before.len() - before.chars().next_back()?.len_utf8())
     }
 
     /// The definition that all statements of one name in a machine and its variants go back to.

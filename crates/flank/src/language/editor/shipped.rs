@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 
 use flank_chain_dsl::syntax::ast::Item;
 use flank_chain_dsl::syntax::parse;
-use flank_chain_dsl::{FileId, Files, NameKind};
+use flank_chain_dsl::{FileId, Files, FolderEntry, NameKind};
 
 use crate::exchange::library;
 use crate::language::editor::analysis::TextSpan;
@@ -57,6 +57,10 @@ impl Files for ShippedFiles {
     fn read(&self, real: &Path, _: usize) -> Result<String> {
         let text = Self::inside(real).and_then(library::text);
         text.map(str::to_string).ok_or_else(|| Error::from(ErrorKind::NotFound))
+    }
+
+    fn entries(&self, folder: &Path, _: usize) -> Vec<FolderEntry> {
+        Self::inside(folder).map(library::entries).unwrap_or_default()
     }
 }
 

@@ -4,11 +4,14 @@ mod arguments;
 mod locals;
 mod members;
 mod names;
+mod paths;
 mod scope;
 mod statements;
 mod units;
 
 use std::collections::HashSet;
+
+pub use paths::PathCompletions;
 
 use flank_chain_dsl::syntax::{Piece, Possible, possible_behind, vocabulary};
 use flank_chain_dsl::{NameKind, SymbolId};
@@ -32,6 +35,10 @@ pub enum CompletionKind {
     Setting,
     /// Several lines with places to fill.
     Snippet,
+    /// A spec that may be used.
+    File,
+    /// A folder with its slash.
+    Folder,
 }
 
 /// A proposal.
