@@ -90,6 +90,37 @@ impl Subject for HalfKnown {
 
 evaluator_suite!(half_known_intervals, HalfKnown);
 
+/// The same in two parts, wherever the second one begins: the same bits.
+struct TwoParts;
+
+impl Subject for TwoParts {
+    type Value = Interval;
+
+    fn evaluate(tape: &Tape, points: &[Vec<f64>]) -> Vec<Vec<Interval>> {
+        let plain = Points::evaluate(tape, points);
+        for first in 0..=tape.output_count() {
+            let mut evaluator = IntervalEvaluator::in_two_parts(tape, first);
+            for (point, expected) in points.iter().zip(&plain) {
+                let inputs: Vec<Interval> = point.iter().copied().map(Interval::point).collect();
+                let mut outputs = vec![Interval::EMPTY; tape.output_count()];
+                let (before, after) = outputs.split_at_mut(first);
+                evaluator.run_first(&inputs, before);
+                evaluator.run_rest(after);
+                assert_eq!(&outputs, expected, "{first} of the outputs at {point:?}");
+                evaluator.run(&inputs, &mut outputs);
+                assert_eq!(&outputs, expected, "all at once at {point:?}");
+            }
+        }
+        plain
+    }
+
+    fn agrees(expected: f64, found: &Interval) -> bool {
+        Points::agrees(expected, found)
+    }
+}
+
+evaluator_suite!(intervals_in_two_parts, TwoParts);
+
 /// Power series, of which the suite sees the constant terms.
 struct Series;
 

@@ -1,7 +1,10 @@
 //! The points that the samples of surfaces ask for, with all that is wanted of them.
 
+use std::sync::Arc;
+
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
 use flank_solver::{GridReport, Outcome, Solution, SurfacePoint, SurfaceProblem};
+use rayon::prelude::*;
 
 use crate::project::failure::Failure;
 use crate::project::remark::NotDone;
@@ -111,7 +114,7 @@ fn in_bands<'j, 'g>(
 
 /// The points of a sample, with what it took to find them.
 pub(crate) struct Found<'j, 'g> {
-    problem: SurfaceProblem,
+    problem: Arc<SurfaceProblem>,
     pub(crate) points: Vec<SurfacePoint>,
     pub(crate) effort: GridReport,
     pub(crate) trims: Vec<Line<'j, 'g>>,
@@ -148,8 +151,7 @@ pub(crate) fn points<'j, 'g>(
 ) -> Found<'j, 'g> {
     let (of, session) = ((job, surface), wanted.session);
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = problem(job, surface, coordinates, session);
-    let solved = || as_solved(&problem, sample);
+    let solved = || as_solved(problem(job, surface, coordinates, session), sample);
     let mut trims = Vec::new();
     let found = if surface.trimmed_by.is_empty() {
         session.sample(of, sample, JUDGED, || judged(of, sample, session.sample(of, sample, SOLVED, solved)))
@@ -160,9 +162,37 @@ pub(crate) fn points<'j, 'g>(
         }));
         judged(of, sample, found)
     };
-    let FoundPoints { points, effort, positions } = found;
+    let FoundPoints { problem, points, effort, positions } = found;
     let positions = positions.expect("what is judged has them");
     Found { problem, points, effort, trims, positions }
+}
+
+/// Solves the samples of some surfaces on all threads, for whoever asks for their points later: with what is known already, that is. Those that
+/// others trim are solved, and cut when somebody asks.
+pub(crate) fn solve_side_by_side<'g>(job: &Job<'g>, surfaces: &[&GeneratedSurface<'g>], session: Session<'_>) {
+    let sampled = || surfaces.iter().filter_map(|surface| Some((*surface, surface.sample.as_ref()?)));
+    // expressions stay on the thread of their graph
+    let asked = sampled().map(|(surface, sample)| {
+        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let tool = surface.trimmed_by.is_empty().then(|| secondary::tool_positions(job, surface, &job.bindings()));
+        (problem(job, surface, coordinates, session), tool, (sample.targets(), sample.counts))
+    });
+    let found = asked.collect::<Vec<_>>().into_par_iter().map(|(problem, tool, (targets, counts))| {
+        let solved = FoundPoints::new(problem, &targets, counts);
+        let judged = tool.map(|tool| {
+            let mut judged = solved.clone();
+            judged.positions = Some(secondary::judge_by(tool, &mut judged.points, counts));
+            judged
+        });
+        (solved, judged)
+    });
+    for ((surface, sample), (solved, judged)) in sampled().zip(found.collect::<Vec<_>>()) {
+        session.sample((job, surface), sample, SOLVED, || solved);
+        if let Some(mut judged) = judged {
+            blank::cut(job, surface, &mut judged.points);
+            session.sample((job, surface), sample, JUDGED, || judged);
+        }
+    }
 }
 
 /// The points of a sample as its equations have them alone: what is cut away is there, too.
@@ -173,10 +203,10 @@ pub(crate) fn untrimmed<'j, 'g>(
     session: Session<'_>,
 ) -> Found<'j, 'g> {
     let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = problem(job, surface, coordinates, session);
-    let found = session.sample((job, surface), sample, SOLVED, || as_solved(&problem, sample));
+    let solved = || as_solved(problem(job, surface, coordinates, session), sample);
+    let FoundPoints { problem, points, effort, .. } = session.sample((job, surface), sample, SOLVED, solved);
     let positions = Positions::Unseen("all other positions");
-    Found { problem, points: found.points, effort: found.effort, trims: Vec::new(), positions }
+    Found { problem, points, effort, trims: Vec::new(), positions }
 }
 
 /// The points of a part of a sample whose branch is known by the unknowns of its point in the middle: as [`points`] has them, without another search for
@@ -197,7 +227,8 @@ pub(crate) fn points_of_branch<'g>(
     for (number, &by) in surface.trimmed_by.iter().enumerate() {
         trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, session));
     }
-    Some(judged((job, surface), sample, FoundPoints { points, effort, positions: None }).points)
+    let found = FoundPoints { problem: Arc::new(problem), points, effort, positions: None };
+    Some(judged((job, surface), sample, found).points)
 }
 
 /// What is asked of samples: their points as the equations have them, and without those that are cut away.
@@ -207,6 +238,7 @@ const JUDGED: &str = "judged";
 /// The points of a sample, and what it took to find them.
 #[derive(Clone)]
 pub(crate) struct FoundPoints {
+    problem: Arc<SurfaceProblem>,
     pub(crate) points: Vec<SurfacePoint>,
     effort: GridReport,
     /// Of the tool, that points were checked against; none where they are as they were solved.
@@ -214,9 +246,15 @@ pub(crate) struct FoundPoints {
 }
 
 /// The points of a sample as its equations have them.
-pub(crate) fn as_solved(problem: &SurfaceProblem, sample: &Sample<'_>) -> FoundPoints {
-    let (points, effort) = problem.solve(&sample.targets(), sample.counts);
-    FoundPoints { points, effort, positions: None }
+pub(crate) fn as_solved(problem: SurfaceProblem, sample: &Sample<'_>) -> FoundPoints {
+    FoundPoints::new(problem, &sample.targets(), sample.counts)
+}
+
+impl FoundPoints {
+    fn new(problem: SurfaceProblem, targets: &[[f64; 2]], counts: [usize; 2]) -> FoundPoints {
+        let (points, effort) = problem.solve(targets, counts);
+        FoundPoints { problem: Arc::new(problem), points, effort, positions: None }
+    }
 }
 
 /// The same without what tools and the blank cut away.

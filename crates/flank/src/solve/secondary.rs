@@ -30,7 +30,16 @@ pub(crate) fn judge<'g>(
     points: &mut [SurfacePoint],
     counts: [usize; 2],
 ) -> Positions {
-    match tool_positions(job, surface, &job.bindings()) {
+    judge_by(tool_positions(job, surface, &job.bindings()), points, counts)
+}
+
+/// The same once it is known what the points are checked against.
+pub(crate) fn judge_by(
+    tool: Result<SecondaryCutting, Positions>,
+    points: &mut [SurfacePoint],
+    counts: [usize; 2],
+) -> Positions {
+    match tool {
         Ok(cutting) => Positions::Seen(cutting.judge(points, counts)),
         Err(none) => none,
     }

@@ -2,7 +2,7 @@
 
 use std::cell::{OnceCell, RefCell};
 
-use flank_chain_dsl::{Coordinate, GeneratedSurface, Job, PointSet, Sample, SampleGrid};
+use flank_chain_dsl::{Coordinate, Expectation, Expected, GeneratedSurface, Job, PointSet, Sample, SampleGrid};
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::failure::Failure;
@@ -68,6 +68,21 @@ impl<'j, 'g> Tested<'j, 'g> {
             lists: RefCell::default(),
             session,
         }
+    }
+
+    /// Solves the samples that expectations look at point by point, side by side.
+    pub(super) fn solve_looked_at(&self) {
+        let is_looked_at = |index: &usize| {
+            let is_limited = self.surface(*index).sample.as_ref().is_some_and(|sample| !sample.limits.is_empty());
+            let is_named = |expectation: &Expectation<'_>| match &expectation.what {
+                Expected::Status { surfaces, at, .. } => at.is_empty() && surfaces.contains(index),
+                Expected::AtPoints { surface, .. } => surface == index,
+                _ => false,
+            };
+            is_limited || self.job.expectations.iter().any(is_named)
+        };
+        let surfaces = (0..self.job.surfaces.len()).filter(is_looked_at).map(|index| self.surface(index));
+        solve::solve_side_by_side(self.job, &surfaces.collect::<Vec<_>>(), self.session);
     }
 
     pub(super) fn surface(&self, index: usize) -> &'j GeneratedSurface<'g> {

@@ -12,6 +12,7 @@ const LEAST_SHARE: f64 = 1e-15;
 
 /// Evaluates a system on boxes at one set of parameters.
 pub(crate) struct Enclosure<'s> {
+    /// Residuals, then the Jacobian.
     whole: IntervalEvaluator<'s>,
     residuals: IntervalEvaluator<'s>,
     size: usize,
@@ -59,7 +60,7 @@ impl<'s> Enclosure<'s> {
         let mut inputs = vec![Interval::WHOLE; size];
         inputs.extend(parameters.iter().copied().map(Interval::point));
         Enclosure {
-            whole: IntervalEvaluator::new(system.tape()),
+            whole: IntervalEvaluator::in_two_parts(system.tape(), size),
             residuals: IntervalEvaluator::new(system.residual_tape()),
             size,
             inputs,
@@ -84,19 +85,25 @@ impl<'s> Enclosure<'s> {
         self.whole.run(&self.inputs, &mut self.outputs);
     }
 
+    /// Residuals on a box; whether one of them has no zero there.
+    fn is_empty(&mut self, boxed: &[Interval]) -> bool {
+        self.inputs[..self.size].copy_from_slice(boxed);
+        let residuals = &mut self.outputs[..self.size];
+        self.whole.run_first(&self.inputs, residuals);
+        residuals.iter().any(|value| !value.contains(0.0))
+    }
+
+    /// The Jacobian on the box of these residuals.
+    fn evaluate_slopes(&mut self) {
+        self.whole.run_rest(&mut self.outputs[self.size..]);
+    }
+
     /// Residuals at a point.
     fn evaluate_point(&mut self, point: &[f64]) {
         for (input, x) in self.inputs.iter_mut().zip(point) {
             *input = Interval::point(*x);
         }
         self.residuals.run(&self.inputs, &mut self.at_point);
-    }
-
-    /// Whether a residual has no zero on a box: that takes no Jacobian.
-    fn is_empty(&mut self, boxed: &[Interval]) -> bool {
-        self.inputs[..self.size].copy_from_slice(boxed);
-        self.residuals.run(&self.inputs, &mut self.at_point);
-        self.at_point.iter().any(|value| !value.contains(0.0))
     }
 
     fn jacobian(&self, row: usize, column: usize) -> Interval {
@@ -121,7 +128,7 @@ impl<'s> Enclosure<'s> {
         if self.is_empty(boxed) {
             return Contraction::Empty;
         }
-        self.evaluate(boxed);
+        self.evaluate_slopes();
         if !self.outputs.iter().all(|output| output.continuous) {
             return Contraction::Blind;
         }
@@ -205,13 +212,13 @@ impl<'s> Enclosure<'s> {
     fn preconditioned(&mut self, row: usize) -> Interval {
         let n = self.size;
         let weights = &self.inverse[row * n..][..n];
-        let sum = |of: &mut dyn Iterator<Item = &Interval>| {
-            weights.iter().zip(of).fold(Interval::point(0.0), |sum, (weight, x)| sum + Interval::point(*weight) * *x)
+        let sum = |from: usize, step: usize, of: &[Interval]| {
+            let weighted = weights.iter().enumerate().map(|(k, weight)| of[from + k * step].times(*weight));
+            weighted.fold(Interval::point(0.0), |sum, term| sum + term)
         };
-        let columns = (0..n).map(|k| sum(&mut self.outputs[n + k..].iter().step_by(n)));
         self.slopes.clear();
-        self.slopes.extend(columns);
-        sum(&mut self.at_point.iter())
+        self.slopes.extend((0..n).map(|column| sum(n + column, n, &self.outputs)));
+        sum(0, 1, &self.at_point)
     }
 
     /// Puts the inverse of the Jacobian's middle into `inverse`; whether there is one.

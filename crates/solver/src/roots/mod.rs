@@ -2,6 +2,7 @@
 
 pub(crate) mod angles;
 pub(crate) mod enclosure;
+pub(crate) mod known;
 
 use flank_expr::Interval;
 
@@ -145,8 +146,8 @@ impl Search<'_> {
         let size = |k: usize| {
             if by_share { share(k) } else { self.enclosure.smear(boxed, k) }
         };
-        let wide = (0..boxed.len()).filter(|&k| share(k) > SMALLEST);
-        wide.max_by(|&a, &b| size(a).total_cmp(&size(b)).then(b.cmp(&a))).unwrap_or(0)
+        let wide = (0..boxed.len()).filter(|&k| share(k) > SMALLEST).map(|k| (k, size(k)));
+        wide.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map_or(0, |(k, _)| k)
     }
 
     /// Whether all roots of a box are known, there being at most one.

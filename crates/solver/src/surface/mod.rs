@@ -20,6 +20,7 @@ use crate::continuation::verdicts::{Keep, TangentPlanes};
 use crate::equations::solution::{Outcome, Range, Solution, verdict};
 use crate::equations::system::System;
 use crate::roots::angles::SearchSystem;
+use crate::roots::known::KnownRoots;
 use crate::roots::{MOST_BOXES, Roots, all_roots};
 use crate::surface::bands::{Band, Targets, solve_in_bands};
 use crate::surface::bound::{BoundSurface, PointEquations};
@@ -365,7 +366,8 @@ impl SurfaceProblem {
     /// Calls something with the choice among branches that this problem makes.
     fn choosing<R>(&self, solve: impl FnOnce(&Choice<'_>) -> R) -> R {
         let (tape, in_lanes, between) = &self.keep;
-        let roots = |ranges: &[Range], target: &[f64; 2]| self.roots(ranges, target);
+        let known = KnownRoots::default();
+        let roots = |ranges: &[Range], target: &[f64; 2]| known.find(ranges, target, || self.roots(ranges, target));
         let planes = TangentPlanes { slopes: &self.slopes, ranges: &self.ranges };
         let keep = Keep { tape, in_lanes, between, ranges: &self.kept_ranges };
         solve(&Choice {

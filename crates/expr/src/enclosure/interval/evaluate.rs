@@ -1,6 +1,7 @@
 //! Runs a tape on intervals.
 
 use std::borrow::Cow;
+use std::ops::Range;
 
 use super::Interval;
 use crate::symbolic::op::{Binary, Unary};
@@ -26,6 +27,8 @@ pub struct IntervalEvaluator<'t> {
     outputs: Cow<'t, [u32]>,
     /// Inputs that a run is given.
     given: usize,
+    /// How many instructions and outputs [`IntervalEvaluator::run_first`] takes.
+    first: [usize; 2],
     registers: Vec<Interval>,
 }
 
@@ -37,7 +40,53 @@ impl<'t> IntervalEvaluator<'t> {
             *register = Interval::point(*constant);
         }
         let (instructions, outputs) = (tape.instructions().into(), tape.outputs().into());
-        IntervalEvaluator { tape, instructions, outputs, given: tape.input_count(), registers }
+        IntervalEvaluator { tape, instructions, outputs, given: tape.input_count(), first: [0; 2], registers }
+    }
+
+    /// The same where the first outputs, so many, can be had before the others: by [`IntervalEvaluator::run_first`], which
+    /// [`IntervalEvaluator::run_rest`] follows. The bits are the same.
+    ///
+    /// # Panics
+    /// If the tape has not so many outputs.
+    pub fn in_two_parts(tape: &'t Tape, first: usize) -> IntervalEvaluator<'t> {
+        let mut evaluator = IntervalEvaluator::new(tape);
+        // the second part finds all that the first one wrote: nothing is written to twice
+        let mut register_of: Vec<u32> = (0..tape.register_count() as u32).collect();
+        let registers = &mut evaluator.registers;
+        let renamed = tape.instructions().iter().map(|step| {
+            let mut moved = Instruction { a: register_of[step.a as usize], ..*step };
+            if reads_two(step) {
+                moved.b = register_of[step.b as usize];
+            }
+            let mut written = |register: u32| {
+                register_of[register as usize] = registers.len() as u32;
+                registers.push(Interval::WHOLE);
+                register_of[register as usize]
+            };
+            moved.out = written(step.out);
+            if step.operation == Operation::SinCos {
+                moved.b = written(step.b);
+            }
+            moved
+        });
+        let renamed: Vec<Instruction> = renamed.collect();
+        evaluator.outputs = tape.outputs().iter().map(|register| register_of[*register as usize]).collect();
+        let mut is_needed = vec![false; evaluator.registers.len()];
+        evaluator.outputs[..first].iter().for_each(|register| is_needed[*register as usize] = true);
+        for step in renamed.iter().rev() {
+            let is_second = step.operation == Operation::SinCos && is_needed[step.b as usize];
+            if is_needed[step.out as usize] || is_second {
+                is_needed[step.out as usize] = true;
+                is_needed[step.a as usize] = true;
+                is_needed[step.b as usize] |= reads_two(step);
+            }
+        }
+        let (mut instructions, rest): (Vec<Instruction>, Vec<Instruction>) =
+            renamed.into_iter().partition(|step| is_needed[step.out as usize]);
+        evaluator.first = [instructions.len(), first];
+        instructions.extend(rest);
+        evaluator.instructions = instructions.into();
+        evaluator
     }
 
     /// The same where the last inputs are always these: what follows from them alone is computed here, once. A run takes the other inputs, and
@@ -56,7 +105,7 @@ impl<'t> IntervalEvaluator<'t> {
         let mut register_of: Vec<u32> = (0..tape.register_count() as u32).collect();
         let (mut done, mut left) = (Vec::new(), Vec::new());
         for step in tape.instructions() {
-            let is_binary = matches!(step.operation, Operation::Binary(_) | Operation::Settled | Operation::Widened);
+            let is_binary = reads_two(step);
             let mut moved = Instruction { a: register_of[step.a as usize], ..*step };
             if is_binary {
                 moved.b = register_of[step.b as usize];
@@ -85,13 +134,43 @@ impl<'t> IntervalEvaluator<'t> {
     /// # Panics
     /// If the slices do not have the lengths that the tape states.
     pub fn run(&mut self, inputs: &[Interval], outputs: &mut [Interval]) {
-        assert_eq!(outputs.len(), self.tape.output_count(), "number of outputs");
         self.registers[..self.given].copy_from_slice(inputs);
         execute(self.tape, &self.instructions, &mut self.registers);
-        for (output, &register) in outputs.iter_mut().zip(self.outputs.iter()) {
+        self.write(0..self.outputs.len(), outputs);
+    }
+
+    /// Encloses the outputs that come first, of an evaluator in two parts.
+    ///
+    /// # Panics
+    /// If the slices do not have the lengths of inputs and first outputs.
+    pub fn run_first(&mut self, inputs: &[Interval], outputs: &mut [Interval]) {
+        let [instructions, count] = self.first;
+        self.registers[..self.given].copy_from_slice(inputs);
+        execute(self.tape, &self.instructions[..instructions], &mut self.registers);
+        self.write(0..count, outputs);
+    }
+
+    /// The other ones, over the box of the inputs that the first ones were given.
+    ///
+    /// # Panics
+    /// If the slice does not have the length of these outputs.
+    pub fn run_rest(&mut self, outputs: &mut [Interval]) {
+        let [instructions, count] = self.first;
+        execute(self.tape, &self.instructions[instructions..], &mut self.registers);
+        self.write(count..self.outputs.len(), outputs);
+    }
+
+    fn write(&self, which: Range<usize>, outputs: &mut [Interval]) {
+        assert_eq!(outputs.len(), which.len(), "number of outputs");
+        for (output, &register) in outputs.iter_mut().zip(&self.outputs[which]) {
             *output = self.registers[register as usize];
         }
     }
+}
+
+/// Whether a step reads its second register.
+fn reads_two(step: &Instruction) -> bool {
+    matches!(step.operation, Operation::Binary(_) | Operation::Settled | Operation::Widened)
 }
 
 fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]) {
@@ -100,7 +179,7 @@ fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]
         registers[step.out as usize] = match step.operation {
             Operation::Unary(op) => op.apply_interval(a),
             Operation::Curve(order) => tape.curves()[step.b as usize].enclosure(order, a),
-            Operation::Binary(op) => binary(op, step, a, registers[step.b as usize]),
+            Operation::Binary(op) => binary(op, step, a, &registers[step.b as usize]),
             Operation::Middle => Interval::point(a.middle()),
             Operation::Settled => a.settled(registers[step.b as usize]),
             Operation::Widened => a.widened(registers[step.b as usize]),
@@ -113,10 +192,16 @@ fn execute(tape: &Tape, instructions: &[Instruction], registers: &mut [Interval]
     }
 }
 
-/// One register twice is one number twice.
-#[inline]
-fn binary(op: Binary, step: &Instruction, a: Interval, b: Interval) -> Interval {
-    if step.a == step.b && op == Binary::Mul { a.squared() } else { op.apply_interval(a, b) }
+/// One register twice is one number twice. Most steps are sums and products: these are written out where steps are taken.
+#[inline(always)]
+fn binary(op: Binary, step: &Instruction, a: Interval, b: &Interval) -> Interval {
+    match op {
+        Binary::Add => a + *b,
+        Binary::Sub => a - *b,
+        Binary::Mul if step.a == step.b => a.squared(),
+        Binary::Mul => a * *b,
+        _ => op.apply_interval(a, *b),
+    }
 }
 
 impl Interval {

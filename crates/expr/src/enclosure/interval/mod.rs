@@ -168,6 +168,18 @@ impl Interval {
         }
     }
 
+    /// The product with a number: that of [`Interval::point`], bit for bit.
+    #[inline]
+    pub fn times(self, number: f64) -> Interval {
+        let (a, b) = (self.lo * number, self.hi * number);
+        let (low, high) = if a < b { (a, b) } else { (b, a) };
+        let is_finite = (low > f64::MIN) & (high < f64::MAX);
+        if is_finite & (low != 0.0) & (high != 0.0) & (self.lo <= self.hi) {
+            return Interval { lo: down_if(true, low), hi: up_if(true, high), continuous: self.continuous };
+        }
+        self.product_with_care(Interval::point(number))
+    }
+
     /// x².
     pub fn squared(self) -> Interval {
         if self.is_empty() {
@@ -242,7 +254,7 @@ impl std::ops::Neg for Interval {
 impl std::ops::Add for Interval {
     type Output = Interval;
 
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Interval) -> Interval {
         let ((lo, is_more, _), (hi, _, is_less)) = (rounded_sum(self.lo, other.lo), rounded_sum(self.hi, other.hi));
         // neither end is infinite, nor the largest number; a sum of zero has no error
@@ -257,7 +269,7 @@ impl std::ops::Add for Interval {
 impl std::ops::Sub for Interval {
     type Output = Interval;
 
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Interval) -> Interval {
         self + -other
     }
@@ -266,7 +278,7 @@ impl std::ops::Sub for Interval {
 impl std::ops::Mul for Interval {
     type Output = Interval;
 
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Interval) -> Interval {
         let (a, b) = (self, other);
         let products = [a.lo * b.lo, a.lo * b.hi, a.hi * b.lo, a.hi * b.hi];
@@ -409,6 +421,9 @@ mod tests {
                 for (fast, careful) in [(*a + *b, a.sum_with_care(*b)), (*a * *b, a.product_with_care(*b))] {
                     assert_eq!(fast, careful, "{a:?} and {b:?}");
                 }
+            }
+            for number in ends.iter().copied().chain([f64::NAN]) {
+                assert_eq!(a.times(number), a.product_with_care(Interval::point(number)), "{a:?} and {number}");
             }
         }
     }

@@ -87,7 +87,7 @@ impl<'j, 'g> Piece<'j, 'g> {
         if let Some(known) = led_to(before).and_then(|start| whole(&problem(), &sample, &start)) {
             return Ok(piece(known));
         }
-        let solved = session.sample((job, surface), &sample, SOLVED, || as_solved(&problem(), &sample));
+        let solved = session.sample((job, surface), &sample, SOLVED, || as_solved(problem(), &sample));
         let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
         if !solved.points.iter().any(is_solved) {
             return Err(refusal::unsolved(job, (solid, surface), &solved.points));
