@@ -1,5 +1,7 @@
 //! One tooth, one space.
 
+use std::f64::consts::PI;
+
 use flank::{Answer, SolidPart};
 use flank_tests::bodies::{euler_characteristic, triangles, volume};
 
@@ -101,5 +103,36 @@ fn parts_of_gears_whose_spaces_differ() {
                 assert!(high - low > 4.0, "{end}: {low} .. {high}");
             }
         }
+    }
+}
+
+/// The opening of a slot with parallel walls of half the width `half` between a flat ground at 30 mm and a tip of 40 mm: its area, and its
+/// moment along its middle.
+fn slot(half: f64) -> [f64; 2] {
+    let (ground, tip) = (30f64, 40f64);
+    let area = half * (tip * tip - half * half).sqrt() + tip * tip * (half / tip).asin() - 2.0 * half * ground;
+    [area, half * (tip * tip - ground * ground) - half.powi(3) / 3.0]
+}
+
+/// A setting of the tool says how wide each slot is: what follows from the number of a space follows it into tools and machines. The bore has no
+/// columns but those of teeth and grounds, and flat grounds need none.
+#[test]
+fn settings_of_tools_follow_the_space() {
+    for [first, wider] in [["2 mm", "0.2 mm"], ["5 mm", "0 mm"]] {
+        let set = [("first", first), ("wider", wider)];
+        let asked = Asked::new("tests/surfaces/specs/slotted_disc.chain", "slotted_disc", &set);
+        let [first, wider] = [first, wider].map(|text| text.trim_end_matches(" mm").parse::<f64>().expect("a number"));
+        let (mut area, mut moment) = (PI * (40.0 * 40.0 - 15.0 * 15.0), [0.0; 2]);
+        for space in 0..12 {
+            let [own, along] = slot(first + wider * f64::from(space));
+            let (sine, cosine) = (f64::from(space) * PI / 6.0).sin_cos();
+            area -= own;
+            moment = [moment[0] - along * cosine, moment[1] - along * sine];
+        }
+        let (body, mesh) = asked.only();
+        assert!((body.volume_mm3 / (10.0 * area) - 1.0).abs() < 1e-9, "{} {}", body.volume_mm3, 10.0 * area);
+        let off = [0, 1].map(|k| body.centre_mm[k] - moment[k] / area);
+        assert!(off.iter().all(|off| off.abs() < 1e-9), "{off:?}");
+        assert!(mesh.len() < 8000, "{} triangles", mesh.len());
     }
 }

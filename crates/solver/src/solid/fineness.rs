@@ -11,6 +11,8 @@ use crate::solid::section::{Fineness, Layout};
 
 /// Cells of a chart in one direction at the most: with so many each chord is as near as charts themselves are.
 const MOST_CELLS: usize = 1 << 13;
+/// Where the rest of the outline wants more columns, grounds get them that have fewer than a share of those of teeth: one in so many.
+const FEW_OF_GROUND: usize = 4;
 /// Curved ends are not looked at more finely than this: nobody has the room for such a mesh.
 const MOST_TRIANGLES: usize = 1 << 25;
 
@@ -224,7 +226,12 @@ impl Offs {
             Some(false) => finer.along = 2 * fineness.along,
             None => {}
         }
+        let ground = [last / 2, last - last / 2];
         match self.below.is_across(tolerance) {
+            // the rest of the outline has the columns of teeth and of grounds, of which flat ones need none themselves
+            Some(true) if fineness.tooth > FEW_OF_GROUND * fineness.charts[ground[0]] => {
+                ground.into_iter().for_each(|k| finer.charts[k] = 2 * fineness.charts[k]);
+            }
             Some(true) => finer.tooth = 2 * fineness.tooth,
             Some(false) => (finer.along, finer.arc) = (2 * fineness.along, 2 * fineness.arc),
             None => {}

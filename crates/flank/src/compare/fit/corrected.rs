@@ -74,8 +74,9 @@ pub(in crate::compare) fn value(dimension: Dimension, value: f64) -> String {
         return units::as_given(dimension, value);
     }
     let unit = units::inside(dimension);
-    match unit.strip_prefix('1') {
-        Some(per) => format!("{value}{per}"),
+    // a unit that begins with a stroke is none of the language
+    match unit.strip_prefix("1/") {
+        Some(below) => format!("{value} / (1 {below})"),
         None => format!("{value} {unit}"),
     }
 }

@@ -18,7 +18,7 @@ use crate::project::shown_path;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units::length;
-use crate::solve::body::bricks_result::{BrickNumbers, MeshResult};
+use crate::solve::body::bricks_result::{BrickNumbers, MeshResult, exact_volume};
 use crate::solve::body::file_of;
 use crate::solve::body::refusal;
 use crate::solve::body::space::{self, Space};
@@ -134,10 +134,8 @@ fn one(
         let ways = ["other numbers with option `elements`"].into_iter().chain(straight.as_deref()).chain([simpler]);
         return refused(message, &ways.collect::<Vec<&str>>());
     }
-    let exact = body.mass_properties().volume * f64::from(teeth) / f64::from(body.teeth());
-    let off = quality.volume / exact - 1.0;
-    let is_share = body.distinct() == 1 || teeth == body.teeth();
-    if is_share && off.abs() > MOST_VOLUME {
+    let off = exact_volume(body, teeth).map_or(0.0, |exact| quality.volume / exact - 1.0);
+    if off.abs() > MOST_VOLUME {
         let message = format!(
             "the bricks of `{}` would be another body: their volume is {:.1} % off, and their faces are off the generated surfaces by up to {}",
             solid.name,

@@ -50,8 +50,8 @@ pub struct BrickNumbers {
     pub deviation_mm: f64,
     /// Of all bricks.
     pub volume_mm3: f64,
-    /// Of the same teeth by the exact surfaces.
-    pub exact_volume_mm3: f64,
+    /// Of the same teeth by the exact surfaces; null of some teeth of a gear whose spaces differ.
+    pub exact_volume_mm3: Option<f64>,
     /// At the corners and in the middle of bricks: 1 in a box, not above 0 in a folded brick.
     pub least_scaled_jacobian: f64,
     /// At three Gauss points in each direction, of the mean of the brick.
@@ -90,6 +90,12 @@ pub struct SetNumbers {
     pub nodes: usize,
 }
 
+/// Of some teeth of a body, mm³; nothing of some of a gear whose spaces differ.
+pub(super) fn exact_volume(body: &Body, teeth: u32) -> Option<f64> {
+    let is_share = body.distinct() == 1 || teeth == body.teeth();
+    is_share.then(|| body.mass_properties().volume * f64::from(teeth) / f64::from(body.teeth()))
+}
+
 impl BrickNumbers {
     pub(crate) fn new(
         (name, frame): (&str, &str),
@@ -100,7 +106,6 @@ impl BrickNumbers {
     ) -> BrickNumbers {
         let set =
             |set: &BrickSet| SetNumbers { name: set.name.clone(), faces: set.faces.len(), nodes: set.nodes.len() };
-        let share = mesh.teeth as f64 / f64::from(body.teeth());
         BrickNumbers {
             name: name.to_string(),
             frame: frame.to_string(),
@@ -118,7 +123,7 @@ impl BrickNumbers {
             },
             deviation_mm: mesh.deviation,
             volume_mm3: quality.volume,
-            exact_volume_mm3: share * body.mass_properties().volume,
+            exact_volume_mm3: exact_volume(body, mesh.teeth as u32),
             least_scaled_jacobian: quality.least_scaled_jacobian,
             least_jacobian: quality.least_jacobian,
             sets: parts.iter().map(set).collect(),
@@ -176,12 +181,14 @@ impl fmt::Display for BrickNumbers {
             across.join(" + ")
         )?;
         writeln!(f, "  faces    off the generated surfaces by at most {}", units::off(self.deviation_mm))?;
-        let off = 1e6 * (self.volume_mm3 / self.exact_volume_mm3 - 1.0);
-        writeln!(
-            f,
-            "  volume   {:.4} mm³, {off:+.1} ppm from {:.4} mm³ by the exact surfaces",
-            self.volume_mm3, self.exact_volume_mm3
-        )?;
+        let against = match self.exact_volume_mm3 {
+            Some(exact) => {
+                let off = 1e6 * (self.volume_mm3 / exact - 1.0);
+                format!("{off:+.1} ppm from {exact:.4} mm³ by the exact surfaces")
+            }
+            None => "of teeth that differ: no side is the other one turned".to_string(),
+        };
+        writeln!(f, "  volume   {:.4} mm³, {against}", self.volume_mm3)?;
         writeln!(
             f,
             "  shape    least scaled Jacobian {:.3}, least Jacobian {:.3} of a brick's mean",

@@ -1,6 +1,7 @@
 //! The surfaces of a tooth space as charts whose borders are the lines that they share.
 
-use flank_chain_dsl::{Job, Solid};
+use flank_chain_dsl::{Job, Parameter, Solid};
+use flank_expr::VariableId;
 use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, SurfacePoints};
 
 use crate::project::failure::Failure;
@@ -82,10 +83,22 @@ fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
     let Some(each) = &solid.each else { return vec![job.clone()] };
     let of_space = |space: u32| {
         let mut job = Job { name: format!("{} {each} {space}", job.name), ..job.clone() };
-        let value = f64::from(space);
-        for parameter in job.parameters.iter_mut().filter(|parameter| parameter.name == *each) {
-            parameter.value = value;
-            parameter.definition = parameter.variable.graph().constant(value);
+        let mut changed: Vec<VariableId> = Vec::new();
+        for at in 0..job.parameters.len() {
+            let Parameter { name, variable, definition, .. } = &job.parameters[at];
+            let graph = variable.graph();
+            // settings of tools and machines follow it, too
+            let definition = if name == each {
+                graph.constant(f64::from(space))
+            } else if graph.variables_of(&[*definition]).iter().any(|of| changed.contains(of)) {
+                graph.substitute(&[*definition], &job.bindings())[0]
+            } else {
+                continue;
+            };
+            changed.extend(variable.as_variable());
+            let parameter = &mut job.parameters[at];
+            parameter.value = definition.as_constant().unwrap_or(f64::NAN);
+            parameter.definition = definition;
         }
         job
     };

@@ -1,0 +1,23 @@
+//! What `flank fit` writes is read again.
+
+mod support;
+
+use support::{flank, folder, text, top};
+
+/// A crowning is 1 over a length, which the language has no unit for.
+#[test]
+fn a_curvature_is_written_as_the_language_reads_it() {
+    let folder = folder("fit_curvature");
+    let out = folder.to_str().expect("a plain path");
+    let spec = "specs/hobbing/crowned_gear.chain";
+    let run = flank(&["measure", spec, "--set", "crowning=30um", "--out", out]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let measured = folder.join("crowned_gear.grid.csv");
+    let measured = measured.to_str().expect("a plain path");
+    let written = top().join("specs/hobbing/not_written.chain");
+    let written = written.to_str().expect("a plain path");
+    let asked = ["upper_flank", "--measured", measured, "--vary", "m.crowning", "--write", written, "--dry"];
+    let run = flank(&[&["fit", spec], &asked[..]].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    assert!(text(&run.stdout).contains("m.crowning: -0.00003"), "{}", text(&run.stdout));
+}
