@@ -20,5 +20,7 @@ mod sessions;
 mod shipped;
 #[path = "lsp/told.rs"]
 mod told;
+#[path = "lsp/work.rs"]
+mod work;
 #[path = "lsp/wrong.rs"]
 mod wrong;

@@ -10,6 +10,7 @@ mod documents;
 mod framing;
 mod live;
 mod position;
+mod progress;
 mod server;
 mod snapshot;
 mod tasks;

@@ -7,13 +7,14 @@ use std::sync::mpsc::SyncSender;
 
 use flank::{
     EvaluatorOptions, Failure, JobSelection, Project, ReportFormat, ReportRequest, ShippedFiles, SolveRequest,
-    SolveResult, Unwatched, analyse,
+    SolveResult, analyse,
 };
 use gen_lsp_types::{TextDocumentContentParams, TextDocumentContentResult};
 use lsp_server::Notification;
 use serde_json::Value;
 
 use super::documents::Documents;
+use super::progress::{Followed, Running};
 use super::server::Event;
 use super::uri;
 use crate::Spelling;
@@ -108,6 +109,7 @@ impl Solves {
 /// Work that goes on beside the conversation.
 pub(super) struct Tasks {
     events: SyncSender<Event>,
+    pub(super) running: Running,
     live: Option<Live>,
     /// The spec that the page shows.
     shown: Option<PathBuf>,
@@ -117,7 +119,7 @@ pub(super) struct Tasks {
 
 impl Tasks {
     pub(super) fn new(events: SyncSender<Event>, spelled: Spelling) -> Tasks {
-        Tasks { events, live: None, shown: None, job: None, spelled }
+        Tasks { events, running: Running::default(), live: None, shown: None, job: None, spelled }
     }
 
     /// Starts a command; what it answers at once.
@@ -134,8 +136,9 @@ impl Tasks {
             Asked::Solve { uri, job } => {
                 let (spec, project) = spec(opened(&uri)?, documents);
                 let (events, generation) = (self.events.clone(), documents.generation);
+                let followed = self.running.begin(format!("solving {job}"), &events);
                 begin(move || {
-                    let outcome = solve((spec, project, generation), job, spelled);
+                    let outcome = solve((spec, project, generation), job, &followed, spelled);
                     let _ = events.send(Event::Solved(outcome));
                 })?;
                 Ok(Value::Null)
@@ -143,8 +146,9 @@ impl Tasks {
             Asked::Report { uri, job } => {
                 let (spec, project) = spec(opened(&uri)?, documents);
                 let events = self.events.clone();
+                let followed = self.running.begin(format!("the report of {job}"), &events);
                 begin(move || {
-                    let (kind, message) = match report((&spec, project), job, spelled) {
+                    let (kind, message) = match report((&spec, project), job, &followed, spelled) {
                         Ok(file) => (3, format!("wrote {file}")),
                         Err(reason) => (1, reason),
                     };
@@ -216,26 +220,31 @@ fn in_words(failure: &Failure, spelled: Spelling) -> String {
 }
 
 /// Solves a job without writing anything.
-fn solve((spec, project, generation): (PathBuf, Project, u64), job: String, spelled: Spelling) -> Outcome {
+fn solve(
+    (spec, project, generation): (PathBuf, Project, u64),
+    job: String,
+    followed: &Followed,
+    spelled: Spelling,
+) -> Outcome {
     let texts = analyse(&project).texts();
     let selection = JobSelection { project, job: Some(job.clone()), set: Vec::new() };
     // where nothing is written, no folder is made that was not there
     let out = spec.parent().unwrap_or(Path::new(".")).to_path_buf();
-    let request = SolveRequest {
+    let request = |sensitivity| SolveRequest {
         arrays: false,
-        jobs: selection,
-        out,
+        jobs: selection.clone(),
+        out: out.clone(),
         format: Vec::new(),
         step: None,
         limits: false,
         no_picture: true,
         geometry: false,
-        sensitivity: true,
+        sensitivity,
         certify: false,
         evaluator: EvaluatorOptions::default(),
     };
     let (mut told, mut influences) = (Vec::new(), Vec::new());
-    let solved = flank::solve(&request, &Unwatched, &mut |result: SolveResult| {
+    let mut take = |result: SolveResult| {
         for surface in &result.surfaces {
             let summary = &surface.summary;
             let worst = summary.worst_residual.map_or(String::new(), |worst| format!(" · {worst:.1e}"));
@@ -249,7 +258,12 @@ fn solve((spec, project, generation): (PathBuf, Project, u64), job: String, spel
                 influences.push((name, text));
             }
         }
-    });
+    };
+    // of very many points there is no room for more than themselves
+    let solved = match flank::solve(&request(true), followed, &mut take) {
+        Err(Failure::TooLarge(_)) => flank::solve(&request(false), followed, &mut take),
+        other => other,
+    };
     let told = solved.map(|()| told.join(", ")).map_err(|failure| in_words(&failure, spelled));
     Outcome { spec, job, generation, texts, told, influences: joined(influences) }
 }
@@ -267,7 +281,12 @@ fn joined(influences: Vec<(String, String)>) -> Vec<(String, String)> {
 }
 
 /// Writes the report of a job into the folder `build` beside its spec, and names the file.
-fn report((spec, project): (&Path, Project), job: String, spelled: Spelling) -> Result<String, String> {
+fn report(
+    (spec, project): (&Path, Project),
+    job: String,
+    followed: &Followed,
+    spelled: Spelling,
+) -> Result<String, String> {
     let out = spec.parent().unwrap_or(Path::new(".")).join("build");
     let request = ReportRequest {
         jobs: JobSelection { project, job: Some(job), set: Vec::new() },
@@ -279,7 +298,7 @@ fn report((spec, project): (&Path, Project), job: String, spelled: Spelling) -> 
         evaluator: EvaluatorOptions::default(),
     };
     let mut files = Vec::new();
-    flank::report(&request, &Unwatched, &mut |result| files.extend(result.files.iter().cloned()))
+    flank::report(&request, followed, &mut |result| files.extend(result.files.iter().cloned()))
         .map_err(|failure| in_words(&failure, spelled))?;
     files.into_iter().next().ok_or("nothing was written".to_string())
 }

@@ -8,6 +8,8 @@ pub(super) struct Editor {
     pub(super) refreshes_lenses: bool,
     pub(super) refreshes_hints: bool,
     pub(super) shows_documents: bool,
+    /// Whether it shows work that goes on.
+    pub(super) shows_progress: bool,
     /// Whether files are watched for who asks.
     pub(super) watches_files: bool,
     /// Whether it knows nothing of Markdown.
@@ -25,6 +27,7 @@ impl Editor {
             refreshes_lenses: can("workspace/codeLens/refreshSupport"),
             refreshes_hints: can("workspace/inlayHint/refreshSupport"),
             shows_documents: can("window/showDocument/support"),
+            shows_progress: can("window/workDoneProgress"),
             watches_files: can("workspace/didChangeWatchedFiles/dynamicRegistration"),
             fills_snippets: can("textDocument/completion/completionItem/snippetSupport"),
             is_plain: formats.is_some_and(|formats| !formats.iter().any(|format| format == "markdown")),

@@ -53,6 +53,14 @@ pub(super) enum Event {
     },
     /// A job is solved, or not.
     Solved(tasks::Outcome),
+    /// How far work is that goes on, and that it is over.
+    Reached {
+        token: String,
+        message: String,
+    },
+    Over {
+        token: String,
+    },
     /// Something for the editor.
     Tell(Notification),
 }
@@ -141,10 +149,12 @@ impl<W: Write> Server<W> {
         loop {
             let now = Instant::now();
             let picture_at = self.picture_at.as_ref().map(|(at, _)| *at);
-            let next = [self.due_at, self.ahead_at, picture_at, self.calm_at()].into_iter().flatten().min();
+            let shows_at = self.tasks.running.shows_at().filter(|_| self.editor.shows_progress);
+            let next = [self.due_at, self.ahead_at, picture_at, self.calm_at(), shows_at].into_iter().flatten().min();
             let event = match next {
                 Some(at) if at <= now => {
                     self.wake(now);
+                    self.show_work(now)?;
                     continue;
                 }
                 Some(at) => events.recv_timeout(at - now),
@@ -183,6 +193,14 @@ impl<W: Write> Server<W> {
             }
             Event::Analysed { spec, version, found } => self.compiled(&spec, version, found),
             Event::Solved(outcome) => self.solved(outcome),
+            Event::Reached { token, message } if self.tasks.running.is_shown(&token) => {
+                self.progress(&token, serde_json::json!({ "kind": "report", "message": message }))
+            }
+            Event::Reached { .. } => Ok(()),
+            Event::Over { token } if self.tasks.running.end(&token) => {
+                self.progress(&token, serde_json::json!({ "kind": "end" }))
+            }
+            Event::Over { .. } => Ok(()),
             Event::Tell(notification) => self.send(&notification.into()),
         }
     }
@@ -252,6 +270,22 @@ impl<W: Write> Server<W> {
             },
             spelled: self.spelled,
         }
+    }
+
+    /// Shows work that takes long.
+    fn show_work(&mut self, now: Instant) -> io::Result<()> {
+        if !self.editor.shows_progress {
+            return Ok(());
+        }
+        for (token, begin) in self.tasks.running.to_show(now) {
+            self.ask("window/workDoneProgress/create", serde_json::json!({ "token": token }))?;
+            self.progress(&token, begin)?;
+        }
+        Ok(())
+    }
+
+    fn progress(&mut self, token: &str, value: Value) -> io::Result<()> {
+        self.tell("$/progress", serde_json::json!({ "token": token, "value": value }))
     }
 
     fn solved(&mut self, outcome: tasks::Outcome) -> io::Result<()> {

@@ -76,6 +76,11 @@ impl<W: Write> Server<W> {
                     self.set(settings)?;
                 }
             }
+            "window/workDoneProgress/cancel" => {
+                if let Some(token) = params.get("token").and_then(Value::as_str) {
+                    self.tasks.running.stop(token);
+                }
+            }
             "flank/didFocus" => {
                 let uri = params.pointer("/textDocument/uri").and_then(Value::as_str);
                 if let Some((path, _)) = uri.and_then(|uri| self.documents.find(uri)) {
