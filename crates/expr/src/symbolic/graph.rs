@@ -461,9 +461,11 @@ impl Graph {
         let mut images: Vec<NodeId> = Vec::with_capacity(nodes.len());
         for Placed { id, node, operands: [a, b] } in nodes {
             let of = |place: usize| images[place];
+            let is_same = node.operands().zip([a, b]).all(|(operand, place)| operand == of(place));
             let image = match node {
                 Node::Constant(_) | Node::Variable(_) => id,
                 Node::Middle(_) => of(a),
+                _ if is_same => id,
                 Node::Unary(op, _) => self.intern(Node::Unary(op, of(a))).id,
                 Node::Binary(op, ..) => self.intern(Node::Binary(op, of(a), of(b))).id,
                 Node::Curve(curve, order, _) => self.intern(Node::Curve(curve, order, of(a))).id,
