@@ -1,4 +1,4 @@
-//! What works on texts: findings, layout, error pages, schemas, tests of specs.
+//! What works on texts: findings, layout, error pages, tests of specs.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -75,10 +75,4 @@ pub(crate) fn units() -> Vec<&'static str> {
 pub(crate) fn unit_size(name: &str) -> Option<(bool, f64)> {
     let (size, dimension) = flank_chain_dsl::unit_size(name)?;
     Some((dimension == Dimension::ANGLE, size))
-}
-
-/// The schemas of documents by their names.
-#[pyfunction]
-pub(crate) fn schemas() -> Vec<(String, String)> {
-    flank::schemas().into_iter().map(|schema| (schema.name, schema.text)).collect()
 }

@@ -31,7 +31,7 @@ mod _flank {
     #[pymodule_export]
     use crate::job::{Job, load};
     #[pymodule_export]
-    use crate::language::{check, codes, explain, layout, schemas, test, unit_size, units};
+    use crate::language::{check, codes, explain, layout, test, unit_size, units};
     #[pymodule_export]
     use crate::operations::{
         contact, convert, derive, deviation, fit, measure, mesh, mill, plot, report, solid, solve, synthesis,

@@ -237,7 +237,11 @@ def schemas() -> dict[str, dict[str, _Any]]:
     >>> "flank.solve/3" in flank.schemas()
     True
     """
-    return {name: _json.loads(text) for name, text in _flank.schemas()}
+    from importlib import resources
+
+    # a file of the package: what makes them from types is a megabyte of code
+    text = resources.files(__name__).joinpath("schemas.json").read_text("utf-8")
+    return _json.loads(text)
 
 
 def evaluator(*, machine_code: bool | None = None, boxes: int | None = None) -> dict[str, _Any]:
