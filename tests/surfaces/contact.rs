@@ -590,6 +590,42 @@ fn a_with_b_is_b_with_a() {
     });
 }
 
+/// A dome that touches a plane at its top: its curvatures are those of the gap, and move neither the point nor the lag.
+#[test]
+fn what_bends_a_flank_at_its_point_changes_the_gap_alone() {
+    let graph = Graph::new();
+    let [x, y, u, v, c] = ["x", "y", "u", "v", "c"].map(|name| graph.variable(name));
+    let (roll, lag) = (graph.variable("roll"), graph.variable("lag"));
+    let zero = graph.constant(0.0);
+    let plane = Surface::parametric([x, y], Vector3([x, y, zero]), false);
+    let ranges = vec![Range { low: -2.0, high: 2.0 }; 2];
+    let plane = BoundSurface::new(&plane, ranges.clone(), &[]);
+    // the unit of the setting may be any: c is a curvature in 1/mm, in 1/m, or in 1/km
+    for unit in [1.0, 1e-3, 1e-6] {
+        let value = 0.1 / unit;
+        let dome = Surface::parametric([u, v], Vector3([u, v, (u * u + v * v * 0.5) * c * (0.5 * unit)]), true);
+        let [open, bound] =
+            [vec![], vec![(c, graph.constant(value))]].map(|values| BoundSurface::new(&dome, ranges.clone(), &values));
+        let moved = Step::Translate(Vector3([roll * 0.1, zero, lag + 0.4]));
+        let pair = RollingPair {
+            surfaces: [&plane, &open],
+            placements: [Chain::new(&graph, vec![]), Chain::new(&graph, vec![moved])],
+            roll,
+            lag: (lag, Range { low: -1.0, high: 1.0 }),
+            outlines: [None, None],
+            parameters: vec![(c, value)],
+        };
+        let problem = ContactProblem::new(&pair).expect("nothing is unbound");
+        let points = [&plane, &bound].map(grid);
+        let point = problem.find(0.5, [&points[0], &points[1]]).expect("the dome comes down on the plane");
+        let change = problem.change(&point, &[(0, 1.0)], false).expect("a regular point");
+        assert!(change.lag.abs() < 1e-12 && change.moved.iter().flatten().all(|x| x.abs() < 1e-12), "{change:?}");
+        // the gap is as bent as the dome; differences leave ten digits
+        let [k1, k2] = change.gap.expect("flank on flank").map(|change| change / unit);
+        assert!((k1 - 1.0).abs() < 1e-9 && (k2 - 0.5).abs() < 1e-9, "{unit}: {k1} {k2}");
+    }
+}
+
 /// Two flanks that face the same way, and a pair whose lag moves nothing along the normal, are told.
 #[test]
 fn what_cannot_touch_is_told() {

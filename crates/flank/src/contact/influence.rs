@@ -16,7 +16,8 @@ use crate::solve::sensitivity::usual_change;
 /// The mounting errors that influences are told for.
 const A_LENGTH: f64 = 0.01;
 const AN_ANGLE: f64 = std::f64::consts::PI / 180.0 / 60.0;
-/// A setting that moves the middle by less, mm, and changes the error by less, urad or um, changes nothing: rounding.
+/// A setting that moves the middle by less, mm, and changes the error by less, urad or um, its parabola and the ellipse by a lesser share,
+/// changes nothing: rounding.
 const NOTHING: f64 = 1e-9;
 /// A second derivative of the error below this is that of an even one: rounding. No share of it is told.
 const EVEN: f64 = 1e-12;
@@ -105,7 +106,10 @@ pub(crate) fn of_all<'g>(
         })
     };
     let mut all: Vec<ContactInfluence> = axes(members.contact).into_iter().filter_map(influence).collect();
-    let changes = |influence: &ContactInfluence| influence.moved_mm[1] > NOTHING || influence.error.abs() > NOTHING;
+    let changes = |influence: &ContactInfluence| {
+        let shares = influence.ellipse.into_iter().chain(influence.parabola);
+        shares.chain([influence.moved_mm[1], influence.error]).any(|change| change.abs() > NOTHING)
+    };
     let mut settings: Vec<ContactInfluence> =
         settings(job, errors.len()).into_iter().filter_map(influence).filter(changes).collect();
     settings.sort_by(|a, b| b.moved_mm[1].total_cmp(&a.moved_mm[1]));

@@ -134,9 +134,9 @@ pub(super) struct Member {
     /// Derivatives of the position by the roll and by the lag.
     pub(super) moved: [Vector3<f64>; 2],
     pub(super) own_slopes: DMatrix<f64>,
-    slopes: DMatrix<f64>,
-    normal_slopes: DMatrix<f64>,
-    constraint_slopes: DMatrix<f64>,
+    pub(super) slopes: DMatrix<f64>,
+    pub(super) normal_slopes: DMatrix<f64>,
+    pub(super) constraint_slopes: DMatrix<f64>,
 }
 
 impl Member {
