@@ -70,9 +70,16 @@ pub(crate) fn units() -> Vec<&'static str> {
     flank::vocabulary().units.to_vec()
 }
 
-/// Whether a unit is one of angles, and its size in mm or radians; none if there is no such unit.
+/// What a unit measures, `length`, `angle`, `number`, or the unit itself if it is none of them, and its size in mm and radians; none if there is no
+/// such unit.
 #[pyfunction]
-pub(crate) fn unit_size(name: &str) -> Option<(bool, f64)> {
-    let (size, dimension) = flank_chain_dsl::unit_size(name)?;
-    Some((dimension == Dimension::ANGLE, size))
+pub(crate) fn unit_size(name: &str) -> Option<(&str, f64)> {
+    let (size, dimension) = flank::read_unit(name)?;
+    let kind = match dimension {
+        Dimension::LENGTH => "length",
+        Dimension::ANGLE => "angle",
+        Dimension::NUMBER => "number",
+        _ => name,
+    };
+    Some((kind, size))
 }

@@ -79,7 +79,7 @@ impl<'py> Options<'_, 'py> {
         Ok(evaluator)
     }
 
-    /// Names with amounts of a kind: lengths in mm, angles in radians, numbers, shares.
+    /// Names with amounts of a kind: lengths in mm, angles in radians, numbers, shares, or a unit: then in mm and radians.
     pub(crate) fn amounts(self, name: &str) -> PyResult<Vec<(String, ToleratedAmount)>> {
         let given: Vec<(String, String, f64)> = self.or(name, Vec::new())?;
         let amount = |(of, kind, size): (String, String, f64)| {
@@ -87,7 +87,8 @@ impl<'py> Options<'_, 'py> {
                 "length" => ToleratedAmount::Length(size),
                 "angle" => ToleratedAmount::Angle(size),
                 "share" => ToleratedAmount::Share(size),
-                _ => ToleratedAmount::Number(size),
+                unit => flank::read_unit(unit)
+                    .map_or(ToleratedAmount::Number(size), |(_, dimension)| ToleratedAmount::Of(size, dimension)),
             };
             (of, amount)
         };

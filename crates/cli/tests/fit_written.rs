@@ -21,3 +21,23 @@ fn a_curvature_is_written_as_the_language_reads_it() {
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     assert!(text(&run.stdout).contains("m.crowning: -0.00003"), "{}", text(&run.stdout));
 }
+
+/// Amounts of what is one over a length have such a unit, too: as 1/mm, 1/cm, or as a plain number of 1/mm.
+#[test]
+fn amounts_of_a_curvature_have_its_unit() {
+    let spec = "specs/hobbing/crowned_gear.chain";
+    let scattered = |amount: &str| {
+        let amount = format!("m.crowning={amount}");
+        let run = flank(&["tolerance", spec, "upper_flank", "--scatter", &amount, "--json"]);
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        let document: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        document["results"].clone()
+    };
+    let plain = scattered("1e-6");
+    for amount in ["1e-6 1/mm", "1e-6/mm", "1e-5 1/cm"] {
+        assert_eq!(scattered(amount), plain, "{amount}");
+    }
+    let run = flank(&["tolerance", spec, "upper_flank", "--scatter", "m.crowning=1um"]);
+    assert_eq!(run.status.code(), Some(1));
+    assert!(text(&run.stderr).contains("an amount in 1/mm above zero"), "{}", text(&run.stderr));
+}

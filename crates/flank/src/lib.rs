@@ -119,7 +119,7 @@ pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
 pub use page::{PageParts, page_parts, view, waiting_page};
-pub use project::amount::{AmountFault, read_amount};
+pub use project::amount::{AmountFault, read_amount, read_unit};
 pub use project::answer::{Answer, Timed, Timing};
 pub use project::choices::{
     BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,

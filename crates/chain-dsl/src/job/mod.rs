@@ -222,7 +222,8 @@ fn with_points<'g>(
     builder.sampled = sampled;
     builder.user = is_variant.then_some(job.name.span);
     let end = job.span.end.saturating_sub(1);
-    builder.end = (!is_variant || job.extends.is_some()).then_some(Span { start: end, end, ..job.span });
+    let has_end = job.is_closed && (!is_variant || job.extends.is_some());
+    builder.end = has_end.then_some(Span { start: end, end, ..job.span });
     context.owner = job.name.node.as_str().into();
     for statement in &job.statements {
         if let JobStatement::Surface(surface) = statement {

@@ -536,3 +536,43 @@ fn a_long_circle_is_told_briefly() {
     assert_eq!(found.iter().map(|finding| finding.code).collect::<Vec<_>>(), [Code::CyclicFrames]);
     assert!(found[0].message.ends_with(" → f14 → f15 → … → f0"), "{}", found[0].message);
 }
+
+/// A text that is being typed ends anywhere, also behind a sign of several bytes: all places that findings name lie between characters.
+#[test]
+fn findings_of_a_text_that_is_cut_off_lie_between_characters() {
+    const JOB: &str = "machine lathe {
+    axis C : rotary
+    frame bed
+    frame work in bed = rotate_z(C)
+}
+tool ball {
+    surface face(u: angle in 0 deg .. 90 deg, v: angle in 0 deg .. 90 deg) {
+        at = [cos(u) * cos(v) * 1 mm, sin(u) * 1 mm, sin(v) * 1 mm]
+        body towards [0, 0, 1]
+    }
+}
+job thread {
+    machine m = lathe
+    tool b = ball
+    motion turn : angle in 0 deg .. 360 deg
+    surface s in m.work = envelope(b.face, over: turn)
+    sample s { u: 0 deg .. 80 deg by 3, v: 0 deg .. 80 deg by 3 }
+}
+";
+    for cut in 1..=JOB.len() {
+        for sign in ["°", "²", " −", "µ\n"] {
+            let graph = Graph::new();
+            let text = format!("{}{sign}", &JOB[..cut]);
+            let compilation = compile_text(&graph, "cut.chain", &text, &[]);
+            assert!(!compilation.diagnostics.is_empty(), "{text}");
+            for finding in &compilation.diagnostics {
+                let notes = finding.notes.iter().map(|note| note.span);
+                let spans = [finding.span].into_iter().chain(notes).chain(finding.cures.iter().map(|cure| cure.span));
+                for span in spans {
+                    let has_place = [span.start, span.end].iter().all(|at| text.is_char_boundary(*at as usize));
+                    assert!(has_place && span.start <= span.end, "{text}\n{finding:?}");
+                }
+            }
+        }
+    }
+}

@@ -16,21 +16,52 @@ pub enum AmountFault {
     UnknownUnit(String),
 }
 
-/// A number with a unit of the language, `%` or nothing behind it: `5um`, `-1 arcmin`, `0.01%`, `3`.
+/// The size of a unit in mm and radians, and what it measures: one of the language, or several of them with powers: `mm`, `1/mm`,
+/// `arcmin/mm`, `mm^2`, `um*rad/mm`.
+pub fn read_unit(text: &str) -> Option<(f64, Dimension)> {
+    /// The highest power of one.
+    const HIGHEST: i32 = 9;
+    let factor = |text: &str| {
+        let (name, power) = text.split_once('^').unwrap_or((text, "1"));
+        let power = power.trim().parse().ok().filter(|power| (1..=HIGHEST).contains(power))?;
+        let (size, dimension) = unit_size(name.trim())?;
+        Some((size.powi(power), dimension.power(power)))
+    };
+    let product = |text: &str| {
+        text.split('*').try_fold((1.0, Dimension::NUMBER), |(size, dimension), text| {
+            let (other, of) = factor(text)?;
+            Some((size * other, dimension.times(of)))
+        })
+    };
+    let (above, below) = text.split_once('/').map_or((text, None), |(above, below)| (above, Some(below)));
+    let above = match above.trim() {
+        "1" | "" if below.is_some() => (1.0, Dimension::NUMBER),
+        above => product(above)?,
+    };
+    let below = below.map_or(Some((1.0, Dimension::NUMBER)), product)?;
+    Some((above.0 / below.0, above.1.over(below.1)))
+}
+
+/// A number with a unit, `%` or nothing behind it: `5um`, `-1 arcmin`, `1e-5 1/mm`, `0.01%`, `3`. Units are those of [`read_unit`].
 ///
 /// # Errors
 /// If there is no number, or no such unit.
 pub fn read_amount(text: &str) -> Result<ToleratedAmount, AmountFault> {
     let text = text.trim();
-    let (digits, unit) = text.split_at(text.rfind(|c: char| c.is_ascii_digit() || c == '.').map_or(0, |at| at + 1));
-    let number = digits.parse().ok().filter(|number: &f64| number.is_finite());
-    let number = number.ok_or_else(|| AmountFault::NoNumber(text.to_string()))?;
-    let unit = unit.trim();
-    match (unit, unit_size(unit)) {
+    // the longest number that stands in front: `1e-3 inch`
+    let known = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
+    let number = known.filter_map(|end| Some((text[..end].trim_end().parse::<f64>().ok()?, end))).next();
+    let no_number = || AmountFault::NoNumber(text.to_string());
+    let (number, end) = number.filter(|(number, _)| number.is_finite()).ok_or_else(no_number)?;
+    let unit = text[end..].trim();
+    match (unit, read_unit(unit)) {
         ("", _) => Ok(ToleratedAmount::Number(number)),
         ("%", _) => Ok(ToleratedAmount::Share(number * 1e-2)),
         (_, Some((size, Dimension::ANGLE))) => Ok(ToleratedAmount::Angle(number * size)),
-        (_, Some((size, _))) => Ok(ToleratedAmount::Length(number * size)),
+        (_, Some((size, Dimension::LENGTH))) => Ok(ToleratedAmount::Length(number * size)),
+        (_, Some((size, Dimension::NUMBER))) => Ok(ToleratedAmount::Number(number * size)),
+        (_, Some((size, dimension))) => Ok(ToleratedAmount::Of(number * size, dimension)),
+        (_, None) if unit.starts_with(|c: char| c.is_ascii_digit()) => Err(no_number()),
         (_, None) => Err(AmountFault::UnknownUnit(unit.to_string())),
     }
 }
@@ -52,6 +83,21 @@ mod tests {
         assert_eq!(read_amount(" -1e-3 inch "), Ok(ToleratedAmount::Length(-25.4e-3)));
         assert_eq!(read_amount("5%"), Ok(ToleratedAmount::Share(0.05)));
         assert_eq!(read_amount("5"), Ok(ToleratedAmount::Number(5.0)));
+        let per_length = Dimension::LENGTH.power(-1);
+        for (text, size, dimension) in [
+            ("1e-5 1/mm", 1e-5, per_length),
+            ("2e-5/mm", 2e-5, per_length),
+            ("0.5 1/cm", 0.05, per_length),
+            ("3 mm^2", 3.0, Dimension::LENGTH.power(2)),
+            ("4 rad/mm^3", 4.0, Dimension::ANGLE.over(Dimension::LENGTH.power(3))),
+            ("5 mm * rad", 5.0, Dimension::LENGTH.times(Dimension::ANGLE)),
+        ] {
+            assert_eq!(read_amount(text), Ok(ToleratedAmount::Of(size, dimension)), "{text}");
+        }
+        assert_eq!(read_amount("7 um/mm"), Ok(ToleratedAmount::Number(7e-3)));
+        for unknown in ["1/", "/", "mm^", "mm^0", "mm^99", "mm/mm/mm", "*mm", "2/mm"] {
+            assert_eq!(read_unit(unknown), None, "{unknown}");
+        }
         assert_eq!(read_amount("5in"), Err(AmountFault::UnknownUnit("in".to_string())));
         for none in ["", "um", "nan mm", "1 2 mm", "1e999mm"] {
             assert!(matches!(read_amount(none), Err(AmountFault::NoNumber(_))), "{none}");

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Job, Request};
+use flank_chain_dsl::{Dimension, Job, Request};
 
 use crate::project::Project;
 use crate::project::choices::{
@@ -11,6 +11,7 @@ use crate::project::choices::{
 };
 use crate::project::failure::Failure;
 use crate::project::session::EvaluatorOptions;
+use crate::project::units;
 
 /// Which jobs of a spec, with which values. A [`Job`](crate::Job) makes one of itself.
 #[derive(Clone, Debug)]
@@ -475,8 +476,35 @@ pub enum ToleratedAmount {
     Angle(f64),
     /// Of a plain number, or what has neither a length nor an angle as unit: in mm and radians.
     Number(f64),
+    /// Of what is neither of them, with its unit: in mm and radians.
+    Of(f64, Dimension),
     /// A share of the value.
     Share(f64),
+}
+
+impl ToleratedAmount {
+    /// Its number, in mm and radians, or the share.
+    pub fn size(self) -> f64 {
+        match self {
+            ToleratedAmount::Length(size)
+            | ToleratedAmount::Angle(size)
+            | ToleratedAmount::Number(size)
+            | ToleratedAmount::Of(size, _)
+            | ToleratedAmount::Share(size) => size,
+        }
+    }
+
+    /// How much that is of something of a dimension, in mm and radians; none if it is an amount of something else, or a share.
+    pub(crate) fn in_unit(self, dimension: Dimension) -> Option<f64> {
+        let is_compound = dimension != Dimension::LENGTH && !units::is_angle(dimension);
+        match self {
+            ToleratedAmount::Length(mm) => (dimension == Dimension::LENGTH).then_some(mm),
+            ToleratedAmount::Angle(radians) => units::is_angle(dimension).then_some(radians),
+            ToleratedAmount::Number(number) => is_compound.then_some(number),
+            ToleratedAmount::Of(size, of) => (is_compound && dimension.accepts(of)).then_some(size),
+            ToleratedAmount::Share(_) => None,
+        }
+    }
 }
 
 /// How far a member is mounted from where it should be.

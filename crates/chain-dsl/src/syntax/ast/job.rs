@@ -21,6 +21,8 @@ pub struct Job {
     pub statements: Vec<JobStatement>,
     /// From `job` to the closing brace.
     pub span: Span,
+    /// Whether it has that brace.
+    pub is_closed: bool,
 }
 
 impl Job {

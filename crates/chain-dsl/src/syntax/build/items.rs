@@ -118,7 +118,7 @@ impl Build<'_> {
         let mut parts = pair.into_inner();
         let Head { doc, name, extends, changes } = self.first_head(&mut parts);
         let statements = parts.filter_map(|part| self.job_statement(part)).collect();
-        Job { doc, name, extends, changes, statements, span }
+        Job { doc, name, extends, changes, statements, span, is_closed: true }
     }
 
     fn variant(&mut self, pair: Pair<'_, Rule>) -> Variant {

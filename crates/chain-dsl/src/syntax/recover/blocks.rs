@@ -32,11 +32,11 @@ impl<'s> Recover<'s> {
             "tool" => Block::Tool(Vec::new()),
             _ => Block::Job(Vec::new()),
         };
-        self.block(&mut block, first, opened);
+        let is_closed = self.block(&mut block, first, opened);
         let span = self.span_since(first);
         self.items.push(match block {
             Block::Machine(statements) => Item::Machine(Machine { doc, name, extends, statements, span }),
-            Block::Job(statements) => Item::Job(Job { doc, name, extends, changes, statements, span }),
+            Block::Job(statements) => Item::Job(Job { doc, name, extends, changes, statements, span, is_closed }),
             Block::Tool(statements) => Item::Tool(Tool { doc, name, statements }),
             Block::Surface(_) => return,
         });
@@ -55,22 +55,24 @@ impl<'s> Recover<'s> {
         (parsed, Some(end - 1).filter(|&index| index > first && self.scan.say(index) == "{"))
     }
 
-    /// Reads statements up to the closing brace of a block that begins at a token.
-    fn block(&mut self, block: &mut Block, first: usize, mut opened: Option<usize>) {
+    /// Reads statements up to the closing brace of a block that begins at a token; whether it is there.
+    fn block(&mut self, block: &mut Block, first: usize, mut opened: Option<usize>) -> bool {
         let mut extra = 0;
         while self.goes_on() {
             if self.say() == "}" && extra > 0 && !self.scan.lacks_closing_brace {
                 (self.at, extra) = (self.at + 1, extra - 1);
             } else if self.say() == "}" {
                 if matches!(block, Block::Surface(_)) && pieces::closes_outer(self.scan, self.at, first) {
-                    return self.unclosed(opened);
+                    self.unclosed(opened);
+                    return false;
                 }
                 self.at += 1;
                 if self.nested > 0 || !self.closed_too_early(block) {
-                    return;
+                    return true;
                 }
             } else if self.ends_block(block, first) {
-                return self.unclosed(opened);
+                self.unclosed(opened);
+                return false;
             } else if self.begins_item(block) {
                 self.nested_item(block);
                 opened = None;
@@ -86,6 +88,7 @@ impl<'s> Recover<'s> {
         if self.at == self.scan.tokens.len() {
             self.unclosed(opened);
         }
+        false
     }
 
     /// Whether a word that begins a statement of the block is followed by nothing that it could introduce, nor is it a name.

@@ -90,15 +90,8 @@ impl KnownInput {
     pub(super) fn amount(&self, of: Distribution) -> Result<f64, Failure> {
         let (Distribution::Normal(amount) | Distribution::Uniform(amount)) = of;
         let inside = match amount {
-            ToleratedAmount::Length(mm) if self.dimension == Dimension::LENGTH => Some(mm),
-            ToleratedAmount::Angle(radians) if units::is_angle(self.dimension) => Some(radians),
-            ToleratedAmount::Number(number)
-                if self.dimension != Dimension::LENGTH && !units::is_angle(self.dimension) =>
-            {
-                Some(number)
-            }
-            ToleratedAmount::Share(share) if self.value != 0.0 => Some(share * self.value.abs()),
-            _ => None,
+            ToleratedAmount::Share(share) => (self.value != 0.0).then_some(share * self.value.abs()),
+            amount => amount.in_unit(self.dimension),
         };
         let name = &self.input.name;
         if self.is_count {
@@ -116,9 +109,13 @@ impl KnownInput {
                 Dimension::ANGLE => {
                     format!("option `scatter {name}`: this takes an angle above zero, for example 1arcmin")
                 }
-                _ => format!(
+                Dimension::NUMBER => format!(
                     "option `scatter {name}`: this takes a plain number above zero, or a share, for example 0.1%"
                 ),
+                of => {
+                    let unit = units::inside(of);
+                    format!("option `scatter {name}`: this takes an amount in {unit} above zero, or a share, for example 0.1%")
+                }
             })
         })?;
         Ok(inside / self.size())

@@ -118,11 +118,8 @@ fn usual(job: &Job<'_>, contacts: &[usize]) -> Vec<Cause> {
 /// An amount in mm, radians or 1; `None` if it is of another kind than the dimension.
 pub(super) fn in_unit(amount: ToleratedAmount, dimension: Dimension, value: f64) -> Option<f64> {
     let found = match amount {
-        ToleratedAmount::Length(mm) if dimension == Dimension::LENGTH => mm,
-        ToleratedAmount::Angle(radians) if units::is_angle(dimension) => radians,
-        ToleratedAmount::Number(number) if dimension != Dimension::LENGTH && !units::is_angle(dimension) => number,
         ToleratedAmount::Share(share) => share * value.abs(),
-        _ => return None,
+        amount => amount.in_unit(dimension)?,
     };
     (found.is_finite() && found > 0.0).then_some(found)
 }
@@ -140,9 +137,10 @@ pub(super) fn refused(
         );
     }
     let wanted = match dimension {
-        Dimension::LENGTH => "a length above zero, for example 0.01mm",
-        Dimension::ANGLE => "an angle above zero, for example 1arcmin",
-        _ => "a plain number above zero, or a share of its value, for example 0.1%",
+        Dimension::LENGTH => "a length above zero, for example 0.01mm".to_string(),
+        Dimension::ANGLE => "an angle above zero, for example 1arcmin".to_string(),
+        Dimension::NUMBER => "a plain number above zero, or a share of its value, for example 0.1%".to_string(),
+        of => format!("an amount in {} above zero, or a share of its value, for example 0.1%", units::inside(of)),
     };
     format!("option `{option} {name}`: this takes {wanted}")
 }
