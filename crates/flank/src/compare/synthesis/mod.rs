@@ -24,6 +24,7 @@ use crate::contact::{Rolled, rolled};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::remark::NotDoneKind;
 use crate::project::requests::{ContactRequest, JobSelection, SynthesisRequest};
 use crate::project::session::Session;
 use crate::project::shown_path;
@@ -86,7 +87,13 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
         let text = corrected::text(&request.jobs, (job, &values), file, &origin)?;
         match request.dry {
             true => result.corrected = Some(text),
-            false => result.files.push(corrected::write(file, &text, &origin)?),
+            false => match result.not_done.iter_mut().find(|of| of.kind == NotDoneKind::NotMet) {
+                Some(unmet) => unmet.details.push(format!(
+                    "{}: not written, as it is not what is wanted; option `dry` tells what it would hold",
+                    shown_path(file)
+                )),
+                None => result.files.push(corrected::write(file, &text, &origin)?),
+            },
         }
     }
     result.not_done = origin.located(&[job], result.not_done);
