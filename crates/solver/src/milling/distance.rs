@@ -15,6 +15,8 @@ pub(super) const APART: f64 = 1e-3;
 const MOST_STEPS: u32 = 20;
 /// A step up to this ends them: the distance is then as near as its square, times some 100 mm.
 const CLOSE: f64 = 1e-8;
+/// A shorter step is not tried.
+const SHORTEST: f64 = 1e-10;
 
 /// A body of revolution in the frame of a cutter: what lies between its outline and the axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -318,8 +320,9 @@ pub(super) fn least_value(surface: &impl Positions, value: &dyn Fn([f64; 3]) -> 
         let next = stepped(at, g, h, mixed);
         let mut share = 1.0;
         let mut taken = None;
+        let whole = (next[0] - at[0]).abs().max((next[1] - at[1]).abs());
         // shorter until it is lower
-        for _ in 0..30 {
+        while share * whole >= SHORTEST {
             let tried = [0, 1].map(|k| (at[k] + share * (next[k] - at[k])).clamp(0.0, 1.0));
             let there = distance(tried);
             if there <= here {

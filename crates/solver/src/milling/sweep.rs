@@ -2,7 +2,7 @@
 
 use crate::milling::deep::deepest;
 use crate::milling::distance::{Shape, ToolBody};
-use crate::milling::height::{NormalLine, lowest};
+use crate::milling::height::{NormalLine, lowest, lowest_until};
 use crate::milling::outline::{Cutter, OutlinePiece};
 use crate::milling::series::PoseSeries;
 
@@ -34,6 +34,8 @@ pub struct SweptCutter {
     /// The ways of clusters, one after the other.
     order: Vec<usize>,
     cutter: Cutter,
+    /// What cuts, and the same with a shank.
+    solid: Shape,
     body: Shape,
     ball: Ball,
 }
@@ -110,7 +112,8 @@ impl SweptCutter {
                 ways.iter().map(|way| (ball.center(&way.middle), way.reach.max(0.0))).collect();
             clustered(&spheres, &mut order, [0, ways.len()], &mut clusters);
         }
-        SweptCutter { ways, clusters, order, cutter: cutter.clone(), body: body.shape(), ball }
+        let (cutter, solid) = (cutter.clone(), cutter.body().shape());
+        SweptCutter { ways, clusters, order, cutter, solid, body: body.shape(), ball }
     }
 
     /// What is left over a point along its normal; `None` if the cutter passes it on no way.
@@ -125,6 +128,9 @@ impl SweptCutter {
     pub fn left_until(&self, line: &NormalLine, enough: f64) -> Option<LeftOver> {
         let point = [line[0], line[1], line[2]];
         let nearest = self.nearest(point)?;
+        if let Some(found) = self.at_a_glance(nearest, line, enough) {
+            return Some(found);
+        }
         let mut best = self.lowest_on(nearest, line);
         let is_enough = |best: Option<LeftOver>| best.is_some_and(|best| best.height <= enough);
         if is_enough(best) {
@@ -147,6 +153,21 @@ impl SweptCutter {
             };
         }
         best
+    }
+
+    /// A height that is not above `enough`, if a way is seen at once to leave one: the place in that height lies in the cutter.
+    fn at_a_glance(&self, k: usize, line: &NormalLine, enough: f64) -> Option<LeftOver> {
+        if enough == f64::NEG_INFINITY {
+            return None;
+        }
+        let way = &self.ways[k];
+        let place = [0, 1, 2].map(|k| line[k] + enough * line[3 + k]);
+        let is_within = |share: f64| self.solid.distance(&way.series.at(share), place) < 0.0;
+        if [0.0, 1.0, 0.5].into_iter().any(is_within) {
+            return Some(LeftOver { height: enough, way: way.number });
+        }
+        let found = lowest_until(&way.series, &self.cutter, line, 0.5, enough)?;
+        (found.height <= enough).then_some(LeftOver { height: found.height, way: way.number })
     }
 
     /// How near a point comes to the ball about the cutter on a way, at the least.

@@ -35,21 +35,21 @@ impl LeftMap {
         swept: &SweptCutter,
         counts: [usize; 2],
     ) -> LeftMap {
-        LeftMap::in_space(target, fields, swept, (counts, SpacePlace::default()))
+        LeftMap::in_space(target, fields, swept, (counts, SpacePlace::default(), f64::NEG_INFINITY))
     }
 
-    /// The same where the surface stands in another space.
+    /// The same where the surface stands in another space; of what is not above `enough`, mm, any height that is not.
     pub(super) fn in_space(
         target: &Target<'_, '_>,
         fields: &Fields,
         swept: &SweptCutter,
-        (counts, stands): ([usize; 2], SpacePlace),
+        (counts, stands, enough): ([usize; 2], SpacePlace, f64),
     ) -> LeftMap {
         let [rows, columns] = middles(counts);
         let stock = target.milling.stock;
         let at = |place: usize| {
             let line = fields.surface.at([rows[place / counts[1]], columns[place % counts[1]]]);
-            swept.left(&stands.placed(&line)).map(|left| LeftOver { height: left.height - stock, ..left })
+            swept.left_until(&stands.placed(&line), stock + enough).map(|left| LeftOver { height: left.height - stock, ..left })
         };
         LeftMap { counts, left: (0..counts[0] * counts[1]).into_par_iter().map(at).collect() }
     }

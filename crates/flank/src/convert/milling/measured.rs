@@ -122,7 +122,11 @@ impl Measured {
         };
         let spots = sweep.spots();
         let spaces = sweep.wanted(&spots, asked);
-        let maps: Vec<LeftMap> = spaces.iter().map(|space| sweep.map(target, found, *space)).collect();
+        let first = sweep.map(target, found, (spaces[0], f64::NEG_INFINITY));
+        // of the other spaces what is more is of interest, and whether all is passed over
+        let known = first.highest().map_or(f64::NEG_INFINITY, |left| left.height);
+        let others = spaces[1..].iter().map(|space| sweep.map(target, found, (*space, known)));
+        let maps: Vec<LeftMap> = std::iter::once(first).chain(others).collect();
         let mut most: Option<(LeftAt, u32)> = None;
         let mut least: Option<(LeftAt, u32, usize)> = None;
         for (map, space) in maps.iter().zip(&spaces) {
@@ -252,10 +256,10 @@ struct Depth {
 
 impl Sweep<'_> {
     /// What is left at points of the map in a space.
-    fn map(&self, target: &Target<'_, '_>, found: &Found<'_, '_>, space: u32) -> LeftMap {
+    fn map(&self, target: &Target<'_, '_>, found: &Found<'_, '_>, (space, enough): (u32, f64)) -> LeftMap {
         let counts = found.map.counts;
         let counts = if space == 0 { counts } else { [0, 1].map(|k| counts[k].min(POINTS[k])) };
-        LeftMap::in_space(target, self.fields, &self.swept, (counts, self.places[space as usize]))
+        LeftMap::in_space(target, self.fields, &self.swept, (counts, self.places[space as usize], enough))
     }
 
     /// The contacts of all passes, row by row, and the places half-way between two; none of a pass with the side, which touches along lines.

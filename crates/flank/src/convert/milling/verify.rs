@@ -54,6 +54,11 @@ pub(super) fn program(
     let bytes = std::fs::read(path).map_err(|error| Failure::Input(format!("`{shown}` cannot be read: {error}")))?;
     // remarks are in whatever letters a control has
     let text = String::from_utf8_lossy(&bytes);
+    if let Some(why) = no_program(&text) {
+        return Err(Failure::Input(format!(
+            "`{shown}` is no NC program: {why}; programs in the words of Fanuc, Siemens 840D, LinuxCNC and Heidenhain's Klartext are read"
+        )));
+    }
     let Program { moves, has_end, has_unit } =
         read(&text, machine).map_err(|fault| Failure::Input(format!("{shown}:{fault}")))?;
     let promised = promised(target, found, machine);
@@ -89,6 +94,31 @@ pub(super) fn program(
         rapid,
         struck,
     })
+}
+
+/// Why a file is no program at all, in words: bytes that no text has, or nothing that any control would do.
+fn no_program(text: &str) -> Option<&'static str> {
+    // tapes begin and end with other letters than those of text, and old editors end with one
+    let is_strange = |letter: char| letter.is_control() && !"\t\n\x0b\x0c\r\x03\x1a\x7f".contains(letter);
+    // the letters of old controls that are no UTF-8 are controls of no kind
+    let strange = text.chars().filter(|letter| is_strange(*letter)).count();
+    if text.starts_with("PK\x03\x04") || text.contains('\0') || 50 * strange > text.len() {
+        return Some("it is no text");
+    }
+    let is_word = |word: &str| {
+        let word = word.trim_start_matches(|letter: char| letter.is_ascii_digit());
+        let mut letters = word.chars();
+        let code = letters.next().is_some_and(|letter| "GMgm".contains(letter));
+        code && letters.next().is_some_and(|letter| letter.is_ascii_digit())
+    };
+    let is_of_program = |line: &str| {
+        let line = line.trim_start_matches(['/', ' ', '\t']);
+        let line = line.strip_prefix(['N', 'n']).unwrap_or(line);
+        line.split_whitespace().any(is_word) || line.to_ascii_uppercase().contains("BEGIN PGM")
+    };
+    let is_empty = text.trim().is_empty();
+    let mut lines = text.split(['\n', '\r']);
+    (!is_empty && !lines.any(is_of_program)).then_some("no line of it has a G or M word, or BEGIN PGM")
 }
 
 /// The rapid of an own program that cuts in deepest, in words; such a program is not written.
