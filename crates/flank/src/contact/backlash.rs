@@ -61,9 +61,8 @@ impl Backlash {
             "contact {name}{how}: the backlash to {other} is negative, {normal} along the normal: both sides of a tooth reach into the mate"
         );
         let way = "make teeth thinner, or mount the pair farther apart".to_string();
-        (self.normal < JAMS).then(|| {
-            NotDone::new(NotDoneKind::Penetration, &members.surfaces[0].name, message).with(vec![way])
-        })
+        (self.normal < JAMS)
+            .then(|| NotDone::new(NotDoneKind::Penetration, &members.surfaces[0].name, message).with(vec![way]))
     }
 }
 

@@ -138,7 +138,9 @@ fn of_contact(
         let ahead = milled.ahead.iter().copied();
         let found = opposite.least_ahead(&members, &rolling, ahead)?;
         // what the generated pair does is told of it
-        found.missed(&members, &format!(" as {} mills it", milled.result.milling)).filter(|_| own.missed(&members, "").is_none())
+        found
+            .missed(&members, &format!(" as {} mills it", milled.result.milling))
+            .filter(|_| own.missed(&members, "").is_none())
     });
     let (files, grids) = files::write(
         job,
@@ -158,7 +160,18 @@ fn of_contact(
         proven,
         files,
         grids,
-        not_done: origin.located(&[job], [&result.not_done[..], &unsound, &rooms.not_done, &open, &unmilled, &jammed.into_iter().collect::<Vec<_>>()].concat()),
+        not_done: origin.located(
+            &[job],
+            [
+                &result.not_done[..],
+                &unsound,
+                &rooms.not_done,
+                &open,
+                &unmilled,
+                &jammed.into_iter().collect::<Vec<_>>(),
+            ]
+            .concat(),
+        ),
         remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
         ..result
     })

@@ -177,7 +177,8 @@ impl Guard<'_> {
             let part = Part { guard: self, way, place: best.place, beside };
             best = part.lowest(part.foot(best.share, best.shares), apart, [0.0, 1.0]);
         }
-        let exact = self.obstacle.nearest_from(&self.shape, &self.places[best.place].back(&way.at(best.share)), best.shares);
+        let exact =
+            self.obstacle.nearest_from(&self.shape, &self.places[best.place].back(&way.at(best.share)), best.shares);
         Struck { distance: exact.distance, shares: exact.shares, ..best }
     }
 }
@@ -200,7 +201,10 @@ mod tests {
         let points = shares[0].iter().flat_map(|u| shares[1].iter().map(move |w| at(u, w)));
         let surface = PoseField::through(points.collect(), [21, 7]);
         let between = [0.0, std::f64::consts::FRAC_PI_2];
-        (Obstacle::new(surface), Cutter { pieces: vec![OutlinePiece::Arc { center: [0.0, 1.0], radius: 1.0, between }] })
+        (
+            Obstacle::new(surface),
+            Cutter { pieces: vec![OutlinePiece::Arc { center: [0.0, 1.0], radius: 1.0, between }] },
+        )
     }
 
     /// The ball goes straight with its centre from one place to another, upright on the cylinder's middle.

@@ -22,6 +22,8 @@ const TRIES: [usize; 2] = [9, 1000];
 const SHANK: f64 = 2.0;
 /// A height by steps is no news where it is lower by less than this, mm.
 const LOWER: f64 = 1e-7;
+/// The ball about a cutter has its centre in that of an arc where it is larger than the least by less than this factor.
+const TO_BALL: f64 = 1.5;
 /// Ways of a cluster that are looked at one by one.
 const FEW: usize = 8;
 
@@ -62,7 +64,9 @@ struct Way {
 #[derive(Clone, Debug)]
 struct Cluster {
     center: [f64; 3],
-    /// No centre of such a ball, moved as far as the cutter reaches, is farther away, mm.
+    /// No centre of such a ball in the middle of its way is farther away, mm, ...
+    spread: f64,
+    /// ... and no such centre, moved as far as the cutter reaches, is farther away, mm.
     radius: f64,
     /// From where to where in the order.
     ways: [usize; 2],
@@ -175,27 +179,23 @@ impl SweptCutter {
         self.ball.distance(&self.ways[k].middle, point) - self.ways[k].reach
     }
 
-    /// The same for all ways of a cluster.
-    fn far_from(&self, cluster: usize, point: [f64; 3]) -> f64 {
-        let Cluster { center, radius, .. } = self.clusters[cluster];
-        distance(center, point) - radius - self.ball.radius
-    }
-
-    /// The way whose ball comes nearest; of several the first.
+    /// The way in whose middle the ball is nearest; of several the first.
     fn nearest(&self, point: [f64; 3]) -> Option<usize> {
+        let far = |k: usize| distance(self.ball.center(&self.ways[k].middle), point);
+        let far_from = |cluster: usize| distance(self.clusters[cluster].center, point) - self.clusters[cluster].spread;
         let mut best: Option<(f64, usize)> = None;
-        let mut left = if self.clusters.is_empty() { Vec::new() } else { vec![(self.far_from(0, point), 0)] };
-        while let Some((far, at)) = left.pop() {
-            if best.is_some_and(|(least, _)| far > least) {
+        let mut left = if self.clusters.is_empty() { Vec::new() } else { vec![(far_from(0), 0)] };
+        while let Some((least, at)) = left.pop() {
+            if best.is_some_and(|(known, _)| least > known) {
                 continue;
             }
             let Some(halves) = self.clusters[at].halves else {
                 let [from, to] = self.clusters[at].ways;
-                let own = self.order[from..to].iter().map(|k| (self.far(*k, point), *k));
+                let own = self.order[from..to].iter().map(|k| (far(*k), *k));
                 best = own.chain(best).min_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
                 continue;
             };
-            let mut halves = halves.map(|half| (self.far_from(half, point), half));
+            let mut halves = halves.map(|half| (far_from(half), half));
             // the nearer one is looked at first
             if halves[0].0 < halves[1].0 {
                 halves.swap(0, 1);
@@ -209,10 +209,10 @@ impl SweptCutter {
     fn within(&self, point: [f64; 3], limit: f64, mut each: impl FnMut(usize)) {
         let mut left = if self.clusters.is_empty() { Vec::new() } else { vec![0] };
         while let Some(at) = left.pop() {
-            if self.far_from(at, point) > limit {
+            let Cluster { center, radius, ways: [from, to], halves, .. } = self.clusters[at];
+            if distance(center, point) - radius - self.ball.radius > limit {
                 continue;
             }
-            let Cluster { ways: [from, to], halves, .. } = self.clusters[at];
             match halves {
                 Some(halves) => left.extend(halves),
                 None => self.order[from..to].iter().filter(|k| self.far(**k, point) <= limit).for_each(|k| each(*k)),
@@ -249,8 +249,9 @@ fn clustered(
     let center = ends.map(|(low, high)| 0.5 * (low + high));
     let reach = |way: &usize| distance(spheres[*way].0, center) + spheres[*way].1;
     let radius = order[from..to].iter().map(reach).fold(0.0, f64::max);
+    let spread = order[from..to].iter().map(|way| distance(spheres[*way].0, center)).fold(0.0, f64::max);
     let number = clusters.len();
-    clusters.push(Cluster { center, radius, ways: [from, to], halves: None });
+    clusters.push(Cluster { center, spread, radius, ways: [from, to], halves: None });
     if to - from > FEW {
         let widest = (0..3).max_by(|a, b| (ends[*a].1 - ends[*a].0).total_cmp(&(ends[*b].1 - ends[*b].0)));
         let across = widest.unwrap_or(0);
@@ -275,9 +276,7 @@ impl Cutter {
 /// The pieces, with the bottom of an edge.
 fn closed(pieces: &[OutlinePiece]) -> Vec<OutlinePiece> {
     let of = |piece: &OutlinePiece| match *piece {
-        OutlinePiece::Arc { center: [rho, z], radius: 0.0, .. } => {
-            OutlinePiece::Line { from: [0.0, z], to: [rho, z] }
-        }
+        OutlinePiece::Arc { center: [rho, z], radius: 0.0, .. } => OutlinePiece::Line { from: [0.0, z], to: [rho, z] },
         piece => piece,
     };
     pieces.iter().map(of).collect()
@@ -314,14 +313,16 @@ impl Ball {
         let ends: Vec<[f64; 2]> = ends.collect();
         let (low, high) =
             ends.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at[1]), high.max(at[1])));
-        // the centre of a ball is the best there is; of what is flat and wide it lies in its middle
+        // of what is flat and wide it lies in its middle
         let centres = pieces.iter().filter_map(|piece| match *piece {
             OutlinePiece::Arc { center: [0.0, z], .. } => Some(z),
             _ => None,
         });
         let of = |z: f64| Ball { z, radius: ends.iter().map(|at| at[0].hypot(at[1] - z)).fold(0.0, f64::max) };
-        let all = centres.chain([0.5 * (low + high)]).map(of);
-        all.reduce(|a, b| if b.radius < a.radius { b } else { a }).unwrap_or(Ball { z: 0.0, radius: 0.0 })
+        // a ball touches with all sides as far from its centre: what is nearest to that is the way that touches
+        let middle = [0.5 * (low + high)].map(of);
+        let all = centres.map(of).filter(|ball| ball.radius < TO_BALL * middle[0].radius).chain(middle);
+        all.into_iter().next().unwrap_or(Ball { z: 0.0, radius: 0.0 })
     }
 
     fn center(self, pose: &[f64; 6]) -> [f64; 3] {

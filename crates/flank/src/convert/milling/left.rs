@@ -49,7 +49,9 @@ impl LeftMap {
         let stock = target.milling.stock;
         let at = |place: usize| {
             let line = fields.surface.at([rows[place / counts[1]], columns[place % counts[1]]]);
-            swept.left_until(&stands.placed(&line), stock + enough).map(|left| LeftOver { height: left.height - stock, ..left })
+            swept
+                .left_until(&stands.placed(&line), stock + enough)
+                .map(|left| LeftOver { height: left.height - stock, ..left })
         };
         LeftMap { counts, left: (0..counts[0] * counts[1]).into_par_iter().map(at).collect() }
     }

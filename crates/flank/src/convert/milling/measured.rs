@@ -144,7 +144,11 @@ impl Measured {
         let least = least.into_iter().chain(deepest).reduce(deeper);
         // the blocks of the plan may be deeper between the places at which these are looked at
         let is_beyond = least.is_some_and(|(left, ..)| left.height < -promised);
-        let promised = if is_beyond { promised.max(rounded - sweep.planned(&found.milled.axes, machine, &blocks)) } else { promised };
+        let promised = if is_beyond {
+            promised.max(rounded - sweep.planned(&found.milled.axes, machine, &blocks))
+        } else {
+            promised
+        };
         let deep = depths.iter().filter(|depth| depth.left.height < -promised).count();
         let counts = maps.iter().map(|map| [map.untouched(), map.points()]).collect();
         let of = sweep.places.len() as u32;
@@ -272,11 +276,11 @@ impl Sweep<'_> {
             let ([x, y, z], [nx, ny, nz]) = (frame.position, frame.normal);
             Spot { shares, line: [x, y, z, nx, ny, nz], pass: Some(k / along.len()) }
         });
-        let between = passes.windows(2).flat_map(|pair| along.iter().map(move |share| [0.5 * (pair[0] + pair[1]), *share]));
+        let between =
+            passes.windows(2).flat_map(|pair| along.iter().map(move |share| [0.5 * (pair[0] + pair[1]), *share]));
         let between: Vec<[f64; 2]> = between.collect();
-        let between = between.into_par_iter().map(|shares| {
-            Spot { shares, line: self.fields.surface.at(shares), pass: None }
-        });
+        let between =
+            between.into_par_iter().map(|shares| Spot { shares, line: self.fields.surface.at(shares), pass: None });
         contacts.chain(between.collect::<Vec<Spot>>()).collect()
     }
 

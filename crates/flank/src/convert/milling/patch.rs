@@ -10,7 +10,7 @@ use crate::solve;
 use crate::solve::reasons;
 
 /// Rows and columns of exact points that polynomials go through, until these are as near as [`NEAR`].
-pub(super) const GRIDS: [[usize; 2]; 4] = [[13, 17], [21, 33], [33, 65], [49, 129]];
+pub(super) const GRIDS: [[usize; 2]; 5] = [[13, 17], [21, 33], [33, 65], [49, 129], [129, 65]];
 /// How near a polynomial is to the surface and to the cutter's pose, mm and radians.
 pub(super) const NEAR: f64 = 1e-10;
 /// How near it is enough to be where a surface bends at once, as where a relief begins, mm: words of programs have a last decimal of ten times as
@@ -178,12 +178,11 @@ impl<'j, 'g> Patch<'j, 'g> {
     /// # Errors
     /// What the surface does not have, or that its polynomials do not come as near.
     pub(super) fn field(&self) -> Result<(PoseField, f64), NotDone> {
-        let mut rougher = None;
+        let mut rougher: Option<(PoseField, [Vec<f64>; 2])> = None;
         for counts in GRIDS {
             let lattice = self.lattice(counts.map(Chart::shares))?;
             let field = point_field(&lattice);
-            let off = field.tail();
-            if off <= NEAR {
+            if field.tail() <= NEAR {
                 return Ok((field, NEAR));
             }
             rougher = Some((field, lattice.shares));

@@ -1,6 +1,7 @@
 //! How many passes, how many blocks, and what these leave.
 
 use flank_chain_dsl::{BlockLength, PassSpacing};
+use flank_export::fixed;
 use flank_solver::{Cusp, PoseSeries, cusp, left_by_block, lowest_beside, peak};
 use rayon::prelude::*;
 
@@ -19,6 +20,8 @@ const FEW_COLUMNS: usize = 5;
 const BEGUN: usize = 33;
 /// ... and so many times closer than the scallop asks for it looks for passes that meet: ridges are lower by the square of that.
 const CLOSER: f64 = 8.0;
+/// A ridge between the places that are looked at while their number is looked for is higher by less than this factor: elsewhere it has another reason.
+const MISSED: f64 = 1.25;
 /// Gaps whose ridges are looked at together; where one has none, no more follow. They become more and more.
 const TOGETHER: [usize; 2] = [4, 256];
 /// Passes whose blocks are looked at while their number is looked for.
@@ -95,6 +98,11 @@ impl Planner<'_, '_, '_> {
         let along = evenly(self.positions(&passes)?);
         let (cusp, short) = self.highest_cusp(&passes)?;
         let cusp = LeftAt { height: cusp.height - self.stock(), ..cusp };
+        if let PassSpacing::Scallop(wanted) = self.target.milling.spacing
+            && cusp.height > MISSED * wanted
+        {
+            return Err(self.too_high(cusp, passes.len(), wanted));
+        }
         let blocks = self.left_by_blocks(&passes, &along, &(0..passes.len()).collect::<Vec<usize>>())?;
         let steps = |k: usize, count: usize| {
             let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[k])).fold(0.0, f64::max);
@@ -156,7 +164,8 @@ impl Planner<'_, '_, '_> {
     /// Passes that leave so much less than `wanted`, mm, by the radius across the feed, that there is no point in more which do not meet either.
     fn most_apart(&self, wanted: f64) -> usize {
         let bending = self.fields.lattice.each().filter_map(|(shares, frame)| {
-            let bending = self.target.pose(shares, frame, self.cutter, 1.0).ok()?.bending(frame, &self.cutter.cutting)?;
+            let bending =
+                self.target.pose(shares, frame, self.cutter, 1.0).ok()?.bending(frame, &self.cutter.cutting)?;
             (bending.effective_radius > 0.0).then_some(bending.effective_radius)
         });
         let radius = bending.fold(f64::INFINITY, f64::min);
@@ -164,6 +173,17 @@ impl Planner<'_, '_, '_> {
         let count = widest / (8.0 * wanted * radius).sqrt();
         // a radius that is not known or not bounded says nothing
         if count.is_finite() { (CLOSER * count).clamp(BEGUN as f64, MOST as f64) as usize } else { BEGUN }
+    }
+
+    /// That a ridge is higher than is asked for, which passes closer together do not change: it lies at the end of the cutter's arc.
+    fn too_high(&self, cusp: LeftAt, passes: usize, wanted: f64) -> NotDone {
+        let [height, wanted] = [cusp.height, wanted].map(|height| fixed(1e3 * height, 4));
+        let place = self.target.place(cusp.shares);
+        let message = format!(
+            "{passes} passes leave a ridge of {height} um at {place}, {wanted} um are asked for: what cuts beside the passes ends there"
+        );
+        let way = "lean the cutter otherwise, or take one with a larger arc; `step` and `by` take passes as they are";
+        NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way.to_string()])
     }
 
     fn too_many(&self, count: usize) -> NotDone {

@@ -147,7 +147,8 @@ impl<'j, 'g> Target<'j, 'g> {
     fn needed(&self) -> f64 {
         let scallop = if let PassSpacing::Scallop(height) = self.milling.spacing { height } else { f64::INFINITY };
         let chord = if let BlockLength::Chord(chord) = self.milling.blocks { chord } else { f64::INFINITY };
-        (SHARE * scallop.min(chord)).min(ENOUGH)
+        let asked = SHARE * scallop.min(chord);
+        if asked.is_finite() { asked } else { ENOUGH }
     }
 
     /// Surface and cutter through exact points at so many rows and columns.
