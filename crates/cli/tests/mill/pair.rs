@@ -11,7 +11,11 @@ use crate::text_of;
 fn contact(spec: &str, out: &Path, arguments: &[&str]) -> Value {
     let out = out.to_str().expect("a plain path");
     let run = flank(&[&["contact", spec, "--out", out, "--no-picture", "--json"][..], arguments].concat());
-    assert!(run.status.success(), "{}", text(&run.stderr));
+    let errors = text(&run.stderr);
+    // ridges use up what a pair without backlash has not, and that is told
+    let is_tight =
+        run.status.code() == Some(3) && errors.matches("  ").count() == errors.matches("  make teeth thinner").count();
+    assert!(run.status.success() || is_tight && errors.contains("as finish mills it: the backlash to"), "{errors}");
     // one document for each contact
     let told = text(&run.stdout);
     let mut documents = serde_json::Deserializer::from_str(&told).into_iter::<Value>();

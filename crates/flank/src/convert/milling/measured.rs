@@ -27,6 +27,8 @@ const CLOSE: f64 = 1e-4;
 const SOLVED: usize = 500;
 /// Of so many of these the height over the surface is looked at.
 const LOOKED_AT: usize = 8;
+/// What is more than rounding, mm.
+const ROUNDING: f64 = 1e-7;
 /// Contacts that tell whether a program cuts in a space.
 const FEW: usize = 9;
 /// Details that are told at the most.
@@ -82,7 +84,9 @@ struct Spot {
 struct Limits {
     /// Anywhere, ...
     anywhere: f64,
-    /// ... and at a contact of a pass.
+    /// ... beside what passes leave, ...
+    by_blocks: f64,
+    /// ... and at a contact of a pass, where a block ends.
     contact: f64,
 }
 
@@ -139,7 +143,7 @@ impl Measured {
         if let Some((left, space, _)) = missing.high.filter(|(left, ..)| left.height.is_finite()) {
             most = most.map(|(known, of)| if left.height > known.height { (left, space) } else { (known, of) });
         }
-        let depths = sweep.depths(&blocks.series);
+        let depths = sweep.depths(&blocks.series, &spaces);
         let deepest = depths.first().map(|depth| (depth.left, depth.space, blocks.lines[depth.block]));
         let least = least.into_iter().chain(deepest).reduce(deeper);
         // the blocks of the plan may be deeper between the places at which these are looked at
@@ -161,9 +165,11 @@ impl Measured {
         self.maps.iter().map(|[untouched, _]| untouched).sum()
     }
 
-    /// The most and the least.
-    pub(super) fn ends(&self, target: &Target<'_, '_>) -> Option<[HeightLeft; 2]> {
-        let ((most, of_most), (least, of_least, _)) = self.most.zip(self.least)?;
+    /// The most and the least, with what a rapid leaves in the first space.
+    pub(super) fn ends(&self, target: &Target<'_, '_>, rapid: Option<LeftAt>) -> Option<[HeightLeft; 2]> {
+        let rapid = rapid.map(|left| (left, 0, 0));
+        let least = self.least.into_iter().chain(rapid).reduce(deeper);
+        let ((most, of_most), (least, of_least, _)) = self.most.zip(least)?;
         Some([(most, of_most), (least, of_least)].map(|(left, space)| {
             let told = left_at(target, left);
             HeightLeft { place: in_space(told.place, space), ..told }
@@ -247,7 +253,7 @@ impl Limits {
         let by_blocks = chord.max(plan.blocks[0].height) + rounded;
         let asked = if let PassSpacing::Scallop(height) = target.milling.spacing { height } else { 0.0 };
         let by_passes = plan.cusp.into_iter().chain(found.map.highest()).map(|left| left.height);
-        Limits { anywhere: by_passes.fold(asked, f64::max) + by_blocks, contact: by_blocks }
+        Limits { anywhere: by_passes.fold(asked, f64::max) + by_blocks, by_blocks, contact: rounded + ROUNDING }
     }
 }
 
@@ -296,16 +302,21 @@ impl Sweep<'_> {
     fn wanted(&self, spots: &[Spot], asked: u32) -> Vec<u32> {
         let all = self.places.len() as u32;
         let contacts: Vec<&Spot> = spots.iter().filter(|spot| spot.pass.is_some()).collect();
-        let some = || (0..FEW).map(|k| contacts[k * (contacts.len() - 1) / (FEW - 1)]);
+        // what lies deep in the cutter is not milled by it
+        let is_left = |spot: &Spot, space: u32| {
+            let left = self.swept.left(&self.places[space as usize].placed(&spot.line));
+            left.is_some_and(|left| (left.height - self.stock).abs() <= self.limits.anywhere)
+        };
         let is_cut = |space: u32| {
-            !contacts.is_empty() && some().any(|spot| self.too_high(spot, space, self.limits.anywhere).is_none())
+            let some = (0..FEW).filter_map(|k| contacts.get(k * (contacts.len().max(1) - 1) / (FEW - 1)));
+            2 * some.filter(|spot| is_left(spot, space)).count() > FEW
         };
         let count = if asked == 1 && (1..all).any(is_cut) { all } else { asked.min(all) };
         (0..count).collect()
     }
 
     fn missing(&self, passes: &SweptCutter, spots: &[Spot], spaces: &[u32]) -> Missing {
-        let Limits { anywhere, contact } = self.limits;
+        let Limits { anywhere, by_blocks, contact } = self.limits;
         // each place in each space at which more is left than at a contact or anywhere
         let of_space = |space: &u32| -> Vec<Option<f64>> {
             let allowed = |spot: &Spot| if spot.pass.is_some() { contact } else { anywhere };
@@ -316,18 +327,20 @@ impl Sweep<'_> {
         // where passes leave more themselves a program may, too
         let planned = |number: usize| -> f64 {
             let left = if is_left(number) { passes.left(&spots[number].line) } else { None };
-            left.map_or(f64::INFINITY, |left| left.height - self.stock) + contact
+            left.map_or(f64::INFINITY, |left| left.height - self.stock)
         };
         let planned: Vec<f64> = (0..spots.len()).into_par_iter().map(planned).collect();
         let passes = self.plan.shares[0].len();
         let mut missing = Missing { allowed: anywhere, ..Missing::default() };
         let (mut absent, mut count) = (Vec::new(), 0);
         for (heights, space) in found.iter().zip(spaces) {
-            let high = |number: usize, allowed: f64| heights[number].filter(|h| *h > allowed.max(planned[number]));
+            let high = |number: usize, allowed: f64| heights[number].filter(|height| *height > allowed);
             let of_pass = |pass: usize| (0..spots.len()).filter(move |number| spots[*number].pass == Some(pass));
-            let is_there = |pass: &usize| of_pass(*pass).any(|number| high(number, contact).is_none());
+            let is_there = |pass: &usize| {
+                of_pass(*pass).any(|number| high(number, contact.max(planned[number] + contact)).is_none())
+            };
             let gone: Vec<usize> = (0..passes).filter(|pass| !is_there(pass)).collect();
-            let is_high = |number: &usize| high(*number, anywhere).is_some();
+            let is_high = |number: &usize| high(*number, anywhere.max(planned[*number] + by_blocks)).is_some();
             if !spots.is_empty() && (0..spots.len()).all(|number| is_high(&number)) {
                 missing.spaces.push(*space);
                 continue;
@@ -352,10 +365,11 @@ impl Sweep<'_> {
         missing
     }
 
-    /// How deep blocks go that do not stay away, in all spaces of the work: the deepest first, whose depths are solved.
-    fn depths(&self, blocks: &[PoseSeries]) -> Vec<Depth> {
+    /// How deep blocks go that do not stay away, in spaces of the work: the deepest first, whose depths are solved.
+    fn depths(&self, blocks: &[PoseSeries], spaces: &[u32]) -> Vec<Depth> {
+        let places: Vec<SpacePlace> = spaces.iter().map(|space| self.places[*space as usize]).collect();
         let obstacle = Obstacle::new(self.fields.surface.clone());
-        let guard = Guard::new(&obstacle, &self.cutter.body(), self.places.clone());
+        let guard = Guard::new(&obstacle, &self.cutter.body(), places.clone());
         let near = |number: usize| Some((number, guard.lowest(&blocks[number], self.stock + BESIDE)?));
         let mut found: Vec<(usize, Struck)> = (0..blocks.len()).into_par_iter().filter_map(near).collect();
         found.sort_unstable_by(|a, b| a.1.distance.total_cmp(&b.1.distance).then(a.0.cmp(&b.0)));
@@ -365,11 +379,11 @@ impl Sweep<'_> {
         found[..close].sort_unstable_by(|a, b| a.1.distance.total_cmp(&b.1.distance).then(a.0.cmp(&b.0)));
         let depth = |(rank, (block, struck)): (usize, (usize, Struck))| {
             let Struck { distance, place, shares, .. } = struck;
-            let line = || self.places[place].placed(&self.fields.surface.at(shares));
+            let line = || places[place].placed(&self.fields.surface.at(shares));
             // along the normal: the distance from what lies deep in the cutter is that of its other side
             let over = if rank < LOOKED_AT { self.swept.left(&line()) } else { None };
             let (height, block) = over.map_or((distance, block), |over| (over.height, over.way));
-            Depth { left: LeftAt { shares, height: height - self.stock }, space: place as u32, block }
+            Depth { left: LeftAt { shares, height: height - self.stock }, space: spaces[place], block }
         };
         let mut all: Vec<Depth> = found.into_iter().enumerate().map(depth).collect();
         let looked_at = all.len().min(LOOKED_AT);
@@ -387,6 +401,6 @@ impl Sweep<'_> {
         let planned: Vec<PoseSeries> = positions.iter().flat_map(of_pass).collect();
         let swept = SweptCutter::of_blocks(planned.clone(), self.cutter);
         let sweep = Sweep { swept, places: vec![SpacePlace::default()], ..*self };
-        sweep.depths(&planned).first().map_or(0.0, |depth| depth.left.height)
+        sweep.depths(&planned, &[0]).first().map_or(0.0, |depth| depth.left.height)
     }
 }

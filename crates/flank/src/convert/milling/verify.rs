@@ -212,7 +212,7 @@ impl ReadProgram {
             tool_centre_control: self.tool_centre_control,
             spaces: self.measured.spaces.iter().map(|space| space + 1).collect(),
             map: HeightMap {
-                left: self.measured.ends(target),
+                left: self.measured.ends(target, self.rapid.map(|(left, _)| left)),
                 untouched: self.measured.untouched().max(map.untouched),
                 ..map
             },
