@@ -150,3 +150,48 @@ fn scallops_out_of_reach_are_told() {
         );
     }
 }
+
+/// `--feed` is that of the contact: the tip goes as much faster or slower as its way is longer or shorter.
+#[test]
+fn the_feed_is_that_of_the_contact() {
+    let out = folder("mill_feed");
+    let spec = written(&out, "milled.chain", &super::sound());
+    json(&spec, &out, &["--nc", "linuxcnc", "--feed", "500"]);
+    json(&spec, &out, &["--nc", "siemens", "--tcp", "--feed", "500"]);
+    let table = super::text_of(&out.join("milled.part.csv"));
+    let mut rows = table.lines().filter(|line| !line.starts_with('#')).map(|line| line.split(',').collect::<Vec<_>>());
+    let titles = rows.next().expect("a header");
+    let at = |row: &[&str], names: [&str; 3]| {
+        names.map(|name| {
+            row[titles.iter().position(|title| *title == name).expect("a column")].parse::<f64>().expect("a number")
+        })
+    };
+    let places: Vec<[[f64; 3]; 2]> =
+        rows.take(9).map(|row| [at(&row, ["x", "y", "z"]), at(&row, ["tip_x", "tip_y", "tip_z"])]).collect();
+    let ways = |k: usize| {
+        places.windows(2).map(move |pair| (0..3).map(|i| (pair[1][k][i] - pair[0][k][i]).powi(2)).sum::<f64>().sqrt())
+    };
+    let feeds = |extension: &str| -> Vec<f64> {
+        let text = super::text_of(&out.join(format!("milled.part.{extension}")));
+        let cuts = text.lines().filter(|line| line.contains("G01 X")).map(str::to_string).collect::<Vec<_>>();
+        // down first, then along the pass
+        cuts[1..9].iter().map(|line| line.rsplit_once('F').expect("a feed").1.parse().expect("a number")).collect()
+    };
+    for ((contact, tip), (inverse, feed)) in ways(0).zip(ways(1)).zip(feeds("ngc").into_iter().zip(feeds("mpf"))) {
+        assert!((inverse * contact / 500.0 - 1.0).abs() < 1e-5, "{inverse} {contact}");
+        // one decimal is written
+        assert!(
+            (feed - 500.0 * tip / contact).abs() < 0.051 && (tip / contact - 1.0).abs() > 1e-3,
+            "{feed} {tip} {contact}"
+        );
+    }
+}
+
+/// A clearance below zero would let the cutter cut in.
+#[test]
+fn a_clearance_is_not_below_zero() {
+    let out = folder("mill_below_zero");
+    let milling = "lead 0 deg\n tilt 75 deg\n clear of flank_plus by -0.1 mm with cutter.whole";
+    let (code, _, told) = mill(&written(&out, "milled.chain", &spur(BALL, milling)), &out, &[]);
+    assert!(code == 1 && told.contains("the clearance is below zero"), "{code} {told}");
+}

@@ -341,7 +341,8 @@ impl Sweep<'_> {
             };
             let gone: Vec<usize> = (0..passes).filter(|pass| !is_there(pass)).collect();
             let is_high = |number: &usize| high(*number, anywhere.max(planned[*number] + by_blocks)).is_some();
-            if !spots.is_empty() && (0..spots.len()).all(|number| is_high(&number)) {
+            let reached = (0..spots.len()).filter(|number| planned[*number].is_finite());
+            if !spots.is_empty() && reached.clone().count() > 0 && reached.clone().all(|number| is_high(&number)) {
                 missing.spaces.push(*space);
                 continue;
             }
