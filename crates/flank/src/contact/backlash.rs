@@ -23,6 +23,9 @@ pub(crate) struct Opposite {
     opening: f64,
 }
 
+/// The backlash with the contact that it is told to, if there is one, and what is not told or not sound.
+type Found = (Option<(Backlash, Opposite)>, Vec<NotDone>);
+
 impl Opposite {
     /// How far the unknown can move at a roll position from where the contact has it.
     fn room(&self, rolling: &Rolling, roll: f64) -> Option<f64> {
@@ -78,7 +81,7 @@ pub(crate) fn of(
     errors: &[f64],
     rolling: &Rolling,
     session: Session,
-) -> Result<(Option<(Backlash, Opposite)>, Vec<NotDone>), Failure> {
+) -> Result<Found, Failure> {
     let own = members.contact;
     let nothing = (None, Vec::new());
     let Some(middle) = rolling.middle().filter(|_| rolling.has_pitch) else { return Ok(nothing) };
