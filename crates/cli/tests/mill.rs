@@ -7,6 +7,8 @@ mod dexels;
 mod pair;
 #[path = "mill/retracts.rs"]
 mod retracts;
+#[path = "mill/spaces.rs"]
+mod spaces;
 #[path = "mill/special.rs"]
 mod special;
 mod support;

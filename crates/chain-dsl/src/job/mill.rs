@@ -342,6 +342,12 @@ impl<'g> Builder<'_, 'g> {
         }
         let distance = context.scalar(&written.distance, &self.scope, Dimension::LENGTH, "the clearance")?;
         let distance = context.require_constant(distance, written.distance.span, "the clearance")?;
+        if distance < 0.0 {
+            let message = "the clearance is below zero: the cutter would cut in";
+            let help = "say how far it stays away, `by 0.1 mm`, or `by 0 mm` where it may touch";
+            context.report(Diagnostic::new(Code::Milling, written.distance.span, message).help(help));
+            return None;
+        }
         let body_name = written.body.joined();
         Some(MillingClearance { obstacle, distance, body_name, body, written: written.surface.span })
     }

@@ -37,7 +37,7 @@ pub(crate) struct Mill {
     /// Blocks are straight in the work: the control keeps the tip on its way (tool-centre control)
     #[arg(long = "tool-centre-control", visible_alias = "tcp")]
     pub(crate) tool_centre_control: bool,
-    /// Of the cutter along the surface, mm/min
+    /// Feed of the contact along the surface, mm/min
     #[arg(long, value_name = "MM/MIN", default_value = "600", value_parser = positive, allow_hyphen_values = true)]
     pub(crate) feed: f64,
     /// Revolutions of the cutter a minute, for programs
@@ -49,7 +49,7 @@ pub(crate) struct Mill {
     /// Spaces of the work that a program mills, one after the other
     #[arg(long, value_name = "COUNT", default_value_t = 1, value_parser = count(1..=1_000_000), allow_hyphen_values = true)]
     pub(crate) spaces: u32,
-    /// Read a program and measure what its blocks leave on the surface
+    /// Read a program and measure what its blocks leave on the surface, in as many spaces as `--spaces` says
     #[arg(long, value_name = "FILE")]
     pub(crate) verify: Option<PathBuf>,
     /// Rows of the points at which what is left is told, by the coordinate that passes are counted by

@@ -12,6 +12,8 @@ use crate::text::one_line;
 
 /// Decimals of tips in the work, mm.
 const DECIMALS_OF_TIPS: usize = 4;
+/// The least feed of a tip, mm/min: one decimal of it is written.
+const LEAST_FEED: f64 = 0.1;
 /// Letters of a block, about.
 const BLOCK: usize = 80;
 
@@ -62,7 +64,7 @@ pub struct ProgramPass {
     pub rows: Vec<Vec<f64>>,
     /// The tips there, in the work, mm.
     pub tips: Vec<[f64; 3]>,
-    /// The way of the cutter to each row but the first, mm.
+    /// The way of the contact to each row but the first, of the tip down to the surface and up from it, mm.
     pub ways: Vec<f64>,
     /// The rapids that take the cutter away, in order.
     pub away: Vec<ProgramRapid>,
@@ -85,7 +87,7 @@ pub struct ProgramRapid {
 /// where the cutter is, and that at the end are positions of the machine (`G53`, `SUPA`, `M91`).
 ///
 /// Blocks of axes have inverse-time feed (`G93`), so that the cutter goes along the surface with the feed whatever the rotary axes do; with
-/// tool-centre control (`TRAORI`, `G43.4`, `FUNCTION TCPM`) the feed is that of the tip. Heidenhain's language has no inverse-time feed: `F` of
+/// tool-centre control (`TRAORI`, `G43.4`, `FUNCTION TCPM`) `F` is the feed of the tip with which the contact goes so fast. Heidenhain's language has no inverse-time feed: `F` of
 /// blocks of axes is their length over mm and degrees alike, per minute.
 ///
 /// # Errors
@@ -270,7 +272,7 @@ impl Blocks<'_> {
             WordsOf::Tip => {
                 for row in 1..pass.rows.len() {
                     let words = self.tip_words(pass, row)?;
-                    self.out.push(format!("{straight} {words} F{}", fixed(program.feed, 1)));
+                    self.out.push(format!("{straight} {words} F{}", fixed(self.feed_of_tip(pass, row), 1)));
                 }
             }
         }
@@ -303,6 +305,14 @@ impl Blocks<'_> {
         let axes = self.words_of_axes(&pass.rows[row], &|| format!("row {} of {}", row + 1, pass.name))?;
         let rotary = self.program.axes.iter().zip(axes).filter(|(axis, _)| axis.is_rotary).map(|(_, word)| word);
         Ok(self.words_of_tip(pass.tips[row]).into_iter().chain(rotary).collect::<Vec<String>>().join(" "))
+    }
+
+    /// The feed of the tip in a block, so that the contact has the feed of the program, mm/min.
+    fn feed_of_tip(&self, pass: &ProgramPass, row: usize) -> f64 {
+        let [from, to] = [pass.tips[row - 1], pass.tips[row]];
+        let way = (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt();
+        // no control takes a feed of nothing
+        (self.program.feed * way / pass.ways[row - 1]).max(LEAST_FEED)
     }
 
     /// The feed of a block of all axes, so that the contact has the feed of the program.

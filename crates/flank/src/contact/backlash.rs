@@ -12,8 +12,65 @@ use crate::project::requests::ContactRequest;
 use crate::project::session::Session;
 use crate::project::units;
 
-/// How much the pair can move between this contact and one of the opposite flanks, which moves the same unknown the other way; what that is not
-/// told for, where the opposite contact is not sound.
+/// Less than this along the normal, mm, is no rounding: both sides of a tooth reach into the mate.
+const JAMS: f64 = -1e-7;
+
+/// The opposite contact, against which the pair can move.
+pub(crate) struct Opposite {
+    name: String,
+    rolling: Rolling,
+    /// Of the contact itself, in which direction of the unknown it opens, and by how much along the normal, mm per its unit.
+    opening: f64,
+}
+
+/// The backlash with the contact that it is told to, if there is one, and what is not told or not sound.
+type Found = (Option<(Backlash, Opposite)>, Vec<NotDone>);
+
+impl Opposite {
+    /// How far the unknown can move at a roll position from where the contact has it.
+    fn room(&self, rolling: &Rolling, roll: f64) -> Option<f64> {
+        let [here, there] = [rolling.lag_at(roll)?, self.rolling.lag_at(roll)?];
+        Some((there - here) * self.opening.signum())
+    }
+
+    fn told(&self, members: &Members<'_, '_>, (room, roll): (f64, f64)) -> Backlash {
+        let own = members.contact;
+        Backlash {
+            other: self.name.clone(),
+            least: units::shown(own.lag.dimension, room),
+            turn: units::shown(own.roll.dimension, roll),
+            normal: room * self.opening.abs(),
+        }
+    }
+
+    /// The least backlash over the pitch, where one flank is higher: by so much of the unknown the pair is ahead at roll positions.
+    pub(crate) fn least_ahead(
+        &self,
+        members: &Members<'_, '_>,
+        rolling: &Rolling,
+        ahead: impl Iterator<Item = (f64, f64)>,
+    ) -> Option<Backlash> {
+        let rooms = ahead.filter_map(|(roll, ahead)| Some((self.room(rolling, roll)? - ahead, roll)));
+        rooms.min_by(|a, b| a.0.total_cmp(&b.0)).map(|least| self.told(members, least))
+    }
+}
+
+impl Backlash {
+    /// That the pair does not go together.
+    pub(crate) fn missed(&self, members: &Members<'_, '_>, how: &str) -> Option<NotDone> {
+        let (name, other) = (&members.contact.name, &self.other);
+        let normal = units::length(self.normal);
+        let message = format!(
+            "contact {name}{how}: the backlash to {other} is negative, {normal} along the normal: both sides of a tooth reach into the mate"
+        );
+        let way = "make teeth thinner, or mount the pair farther apart".to_string();
+        (self.normal < JAMS)
+            .then(|| NotDone::new(NotDoneKind::Penetration, &members.surfaces[0].name, message).with(vec![way]))
+    }
+}
+
+/// How much the pair can move between this contact and one of the opposite flanks, which moves the same unknown the other way, with that; what that
+/// is not told for, where the opposite contact is not sound, or that there is none.
 ///
 /// # Errors
 /// If a flank is not sampled, or the work is cancelled.
@@ -24,7 +81,7 @@ pub(crate) fn of(
     errors: &[f64],
     rolling: &Rolling,
     session: Session,
-) -> Result<(Option<Backlash>, Vec<NotDone>), Failure> {
+) -> Result<Found, Failure> {
     let own = members.contact;
     let nothing = (None, Vec::new());
     let Some(middle) = rolling.middle().filter(|_| rolling.has_pitch) else { return Ok(nothing) };
@@ -51,20 +108,14 @@ pub(crate) fn of(
                 vec![NotDone::new(NotDoneKind::NotSolved, &members.surfaces[0].name, message).with(vec![way])],
             ));
         }
-        let room = |roll: f64| {
-            let [here, there] = [rolling.lag_at(roll)?, opposite.lag_at(roll)?];
-            Some(((there - here) * middle.opening.signum(), roll))
-        };
+        let opposite = Opposite { name: other.name.clone(), rolling: opposite, opening: middle.opening };
         let looked_at = rolling.looked_at();
         let rolls = rolling.steps_of(looked_at).map(|step| rolling.roll_of(looked_at, step));
-        let least = rolls.filter_map(room).min_by(|a, b| a.0.total_cmp(&b.0));
-        let told = least.map(|(room, roll)| Backlash {
-            other: other.name.clone(),
-            least: units::shown(own.lag.dimension, room),
-            turn: units::shown(own.roll.dimension, roll),
-            normal: room * middle.opening.abs(),
-        });
-        return Ok((told, Vec::new()));
+        let rooms = rolls.filter_map(|roll| Some((opposite.room(rolling, roll)?, roll)));
+        let least = rooms.min_by(|a, b| a.0.total_cmp(&b.0));
+        let told = least.map(|least| opposite.told(members, least));
+        let missed = told.iter().filter_map(|told| told.missed(members, "")).collect();
+        return Ok((told.map(|told| (told, opposite)), missed));
     }
     Ok(nothing)
 }

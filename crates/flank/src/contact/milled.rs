@@ -41,6 +41,8 @@ const PATTERN_ROWS: usize = 241;
 /// A pair whose one flank is milled.
 pub(crate) struct MilledPair {
     pub(crate) result: MilledContact,
+    /// Roll positions, and by how much of the unknown the milled pair is ahead of the generated one there.
+    pub(crate) ahead: Vec<(f64, f64)>,
     /// The points of passes and ridges with the least gaps of the generated and of the milled flank.
     pub(crate) patches: [Patch; 2],
     pub(crate) drawing: MilledPairDrawing,
@@ -135,13 +137,14 @@ pub(crate) fn rolled<'j, 'g>(
     let steps = rolling.steps();
     let within = |position: &&Position| (steps.start * parts..=steps.end * parts).contains(&position.number);
     let (lag, roll) = (&members.contact.lag, &members.contact.roll);
-    let mut rows: Vec<[f64; 4]> = Vec::new();
+    let (mut rows, mut all_ahead): (Vec<[f64; 4]>, Vec<(f64, f64)>) = (Vec::new(), Vec::new());
     for position in positions.iter().filter(within) {
         let Some(ahead) = composite(position.number) else { continue };
         let milled = position.lag + position.own.opening.signum() * ahead;
         let at = units::shown(roll.dimension, position.roll);
         let [generated, milled] = [position.lag, milled].map(|lag_at| fine(lag.dimension, lag_at - reference));
         rows.push([at, generated, milled, fine(lag.dimension, ahead)]);
+        all_ahead.push((position.roll, ahead));
     }
     let whole: Vec<([f64; 2], [f64; 2])> = positions
         .iter()
@@ -204,7 +207,7 @@ pub(crate) fn rolled<'j, 'g>(
             chart("what is left adds", "by how much it holds the driven member away", away),
         ],
     };
-    MilledPair { result, patches, drawing }
+    MilledPair { result, ahead: all_ahead, patches, drawing }
 }
 
 /// The rows and columns of both in which one of them has a gap up to `most`, and those beside them; gaps are no wider there than that.

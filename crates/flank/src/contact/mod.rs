@@ -134,6 +134,14 @@ fn of_contact(
     let shown = drawn::drawn(job, &members, (&pair, &rolling), &patterns, request.compound);
     let header = solve::header(&[job], &request.jobs, origin);
     let (milled, unmilled) = milled_beside(job, &members, (&pair, &rolling), (request, &shown, header, session))?;
+    let jammed = milled.as_ref().zip(backlash.as_ref()).and_then(|(milled, (own, opposite))| {
+        let ahead = milled.ahead.iter().copied();
+        let found = opposite.least_ahead(&members, &rolling, ahead)?;
+        // what the generated pair does is told of it
+        found
+            .missed(&members, &format!(" as {} mills it", milled.result.milling))
+            .filter(|_| own.missed(&members, "").is_none())
+    });
     let (files, grids) = files::write(
         job,
         &members,
@@ -147,12 +155,23 @@ fn of_contact(
         milled: milled.map(|milled| milled.result),
         influences,
         vhj,
-        backlash,
+        backlash: backlash.map(|(backlash, _)| backlash),
         clearances: rooms.clearances,
         proven,
         files,
         grids,
-        not_done: origin.located(&[job], [&result.not_done[..], &unsound, &rooms.not_done, &open, &unmilled].concat()),
+        not_done: origin.located(
+            &[job],
+            [
+                &result.not_done[..],
+                &unsound,
+                &rooms.not_done,
+                &open,
+                &unmilled,
+                &jammed.into_iter().collect::<Vec<_>>(),
+            ]
+            .concat(),
+        ),
         remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
         ..result
     })

@@ -100,7 +100,7 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         let mut result = rolled.result;
         if self.is_asked(index, |number| matches!(number, ContactNumber::Backlash | ContactNumber::NormalBacklash)) {
             let (found, unsound) = backlash::of(job, &rolled.members, &request, &none, rolling, session)?;
-            result.backlash = found;
+            result.backlash = found.map(|(backlash, _)| backlash);
             result.not_done.extend(unsound);
         }
         if self.is_asked(index, |number| number == ContactNumber::Clearance) {

@@ -10,11 +10,13 @@ const COARSE: usize = 4;
 /// Points of a part of a surface that are looked at one by one, in each direction.
 const FEW: usize = 4;
 /// Shares by which a surface is left and right of a point to tell how the distance changes.
-const APART: f64 = 1e-3;
+pub(super) const APART: f64 = 1e-3;
 /// Newton's steps at the most.
 const MOST_STEPS: u32 = 20;
 /// A step up to this ends them: the distance is then as near as its square, times some 100 mm.
 const CLOSE: f64 = 1e-8;
+/// A shorter step is not tried.
+const SHORTEST: f64 = 1e-10;
 
 /// A body of revolution in the frame of a cutter: what lies between its outline and the axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -231,10 +233,7 @@ impl Obstacle {
     /// The place that is nearest to a body at a pose; `None` if none can be nearer than `limit`.
     pub fn nearest(&self, body: &ToolBody, pose: &[f64; 6], limit: f64) -> Option<Nearest> {
         let shape = body.shape();
-        let distance = |point: usize| shape.distance(pose, self.points[point]);
-        let mut best = (f64::INFINITY, 0);
-        self.nearest_in(&self.parts[0], &distance, &mut best);
-        let (coarse, start) = (best.0, self.shares(best.1));
+        let Nearest { distance: coarse, shares: start } = self.nearest_point(&shape, pose);
         if coarse - self.reach > limit {
             return None;
         }
@@ -261,36 +260,85 @@ impl Obstacle {
         Some(if found.distance <= coarse { found } else { Nearest { distance: coarse, shares: start } })
     }
 
-    /// Newton's method for the least value over the surface from a start, within the surface's ends.
-    fn solved(&self, value: &dyn Fn([f64; 3]) -> f64, mut at: [f64; 2]) -> Nearest {
-        let distance = |shares: [f64; 2]| value(self.surface.position(shares));
-        let mut here = distance(at);
-        for _ in 0..MOST_STEPS {
-            let [[a, w, b], [s, _, n], [c, e, d]] = self.surface.around(at, APART).map(|row| row.map(value));
-            let (g, h) = ([0.5 * (e - w), 0.5 * (n - s)], [e - 2.0 * here + w, n - 2.0 * here + s]);
-            let mixed = 0.25 * (d - c - b + a);
-            let next = stepped(at, g, h, mixed);
-            let mut share = 1.0;
-            let mut taken = None;
-            // shorter until it is lower
-            for _ in 0..30 {
-                let tried = [0, 1].map(|k| (at[k] + share * (next[k] - at[k])).clamp(0.0, 1.0));
-                let there = distance(tried);
-                if there <= here {
-                    taken = Some((tried, there));
-                    break;
-                }
-                share *= 0.5;
-            }
-            let Some((tried, there)) = taken else { break };
-            let moved = (tried[0] - at[0]).abs().max((tried[1] - at[1]).abs());
-            (at, here) = (tried, there);
-            if moved < CLOSE {
+    /// The least value over the surface from a start.
+    fn solved(&self, value: &dyn Fn([f64; 3]) -> f64, at: [f64; 2]) -> Nearest {
+        least_value(&self.surface, value, at)
+    }
+
+    /// The nearest of the points that are looked at first, mm and shares.
+    pub(super) fn nearest_point(&self, shape: &Shape, pose: &[f64; 6]) -> Nearest {
+        let distance = |point: usize| shape.distance(pose, self.points[point]);
+        let mut best = (f64::INFINITY, 0);
+        self.nearest_in(&self.parts[0], &distance, &mut best);
+        Nearest { distance: best.0, shares: self.shares(best.1) }
+    }
+
+    /// The nearest place to a body, from a start.
+    pub(super) fn nearest_from(&self, shape: &Shape, pose: &[f64; 6], start: [f64; 2]) -> Nearest {
+        self.solved(&|point| shape.distance(pose, point), start)
+    }
+
+    /// How far from the nearest of these points the nearest place of the surface may lie, mm.
+    pub(super) fn reach(&self) -> f64 {
+        self.reach
+    }
+
+    /// What no place of the surface is nearer than, at a glance.
+    pub(super) fn far(&self, shape: &Shape, pose: &[f64; 6]) -> f64 {
+        let whole = &self.parts[0];
+        shape.distance(pose, self.points[whole.middle]) - whole.radius - self.reach
+    }
+}
+
+/// A surface over two shares.
+pub(super) trait Positions {
+    /// The position at shares, mm.
+    fn position(&self, shares: [f64; 2]) -> [f64; 3];
+
+    /// The positions so far before shares, at them, and so far behind, across the passes and along them.
+    fn around(&self, shares: [f64; 2], apart: f64) -> [[[f64; 3]; 3]; 3];
+}
+
+impl Positions for PoseField {
+    fn position(&self, shares: [f64; 2]) -> [f64; 3] {
+        PoseField::position(self, shares)
+    }
+
+    fn around(&self, shares: [f64; 2], apart: f64) -> [[[f64; 3]; 3]; 3] {
+        PoseField::around(self, shares, apart)
+    }
+}
+
+/// Newton's method for the least value over a surface from a start, within the surface's ends.
+pub(super) fn least_value(surface: &impl Positions, value: &dyn Fn([f64; 3]) -> f64, mut at: [f64; 2]) -> Nearest {
+    let distance = |shares: [f64; 2]| value(surface.position(shares));
+    let mut here = distance(at);
+    for _ in 0..MOST_STEPS {
+        let [[a, w, b], [s, _, n], [c, e, d]] = surface.around(at, APART).map(|row| row.map(value));
+        let (g, h) = ([0.5 * (e - w), 0.5 * (n - s)], [e - 2.0 * here + w, n - 2.0 * here + s]);
+        let mixed = 0.25 * (d - c - b + a);
+        let next = stepped(at, g, h, mixed);
+        let mut share = 1.0;
+        let mut taken = None;
+        let whole = (next[0] - at[0]).abs().max((next[1] - at[1]).abs());
+        // shorter until it is lower
+        while share * whole >= SHORTEST {
+            let tried = [0, 1].map(|k| (at[k] + share * (next[k] - at[k])).clamp(0.0, 1.0));
+            let there = distance(tried);
+            if there <= here {
+                taken = Some((tried, there));
                 break;
             }
+            share *= 0.5;
         }
-        Nearest { distance: here, shares: at }
+        let Some((tried, there)) = taken else { break };
+        let moved = (tried[0] - at[0]).abs().max((tried[1] - at[1]).abs());
+        (at, here) = (tried, there);
+        if moved < CLOSE {
+            break;
+        }
     }
+    Nearest { distance: here, shares: at }
 }
 
 fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {

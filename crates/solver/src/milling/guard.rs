@@ -22,7 +22,7 @@ impl SpacePlace {
     }
 
     /// A pose over this space as it stands over the first one.
-    fn back(self, pose: &[f64; 6]) -> [f64; 6] {
+    pub(super) fn back(self, pose: &[f64; 6]) -> [f64; 6] {
         let [x, y, z, i, j, k] = *pose;
         let (s, c) = self.turn.sin_cos();
         let y = y - self.shift;
@@ -33,12 +33,12 @@ impl SpacePlace {
 /// A surface in all spaces of the work, and a body that does not cut into it.
 #[derive(Clone, Debug)]
 pub struct Guard<'o> {
-    obstacle: &'o Obstacle,
+    pub(super) obstacle: &'o Obstacle,
     body: ToolBody,
-    shape: Shape,
+    pub(super) shape: Shape,
     /// No point of the body is farther from the tip, mm.
     reach: f64,
-    places: Vec<SpacePlace>,
+    pub(super) places: Vec<SpacePlace>,
 }
 
 /// Where a body cuts in.
@@ -93,7 +93,7 @@ impl<'o> Guard<'o> {
     }
 
     /// How far a point of the body moves with the share at the most, mm.
-    fn rate(&self, way: &PoseSeries) -> f64 {
+    pub(super) fn rate(&self, way: &PoseSeries) -> f64 {
         let [tip, axis] = way.rates();
         (tip + self.reach * axis).max(f64::MIN_POSITIVE)
     }

@@ -36,6 +36,25 @@ pub fn lowest(way: &PoseSeries, cutter: &Cutter, line: &NormalLine, near: f64) -
     each.min_by(|a, b| a.height.total_cmp(&b.height))
 }
 
+/// The same where it is above `enough`, mm, else the height at which one of its pieces passes that is not.
+pub(crate) fn lowest_until(
+    way: &PoseSeries,
+    cutter: &Cutter,
+    line: &NormalLine,
+    near: f64,
+    enough: f64,
+) -> Option<Lowest> {
+    let mut best: Option<Lowest> = None;
+    for piece in &cutter.pieces {
+        let found = of_piece(way, piece, line, near);
+        best = best.into_iter().chain(found).min_by(|a, b| a.height.total_cmp(&b.height));
+        if best.is_some_and(|best| best.height <= enough) {
+            break;
+        }
+    }
+    best
+}
+
 /// A function of the share u and the height h, with its derivatives.
 #[derive(Clone, Copy)]
 struct Jet {

@@ -8,6 +8,7 @@ pub(crate) mod axes;
 pub(crate) mod clear;
 pub(crate) mod cusp;
 pub(crate) mod deep;
+pub(crate) mod depth;
 pub(crate) mod distance;
 pub(crate) mod frame;
 pub(crate) mod guard;

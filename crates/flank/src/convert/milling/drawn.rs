@@ -241,7 +241,7 @@ fn clearances(
         let body = ToolBody { pieces: outline(job, &clearance.body)?.pieces };
         let area = sampled(job, target.milling, surface)?;
         let patch = Milled::new(job, &job.surfaces[surface], area, session);
-        let Ok(field) = patch.field() else { continue };
+        let Ok((field, _)) = patch.field() else { continue };
         let obstacle = Obstacle::new(field);
         let distance = |pose: &[f64; 6]| obstacle.nearest(&body, pose, f64::INFINITY).map(|nearest| nearest.distance);
         let distances: Vec<Option<f64>> = found.milled.poses[pass].par_iter().map(distance).collect();

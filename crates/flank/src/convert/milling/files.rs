@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use flank_chain_dsl::{Dimension, Job};
+use flank_chain_dsl::{Dimension, Job, PassSpacing};
 use flank_export::{Dialect, MachineAxis, PassProgram, ProgramPass, WordsOf, write_passes};
 
 use super::left::LeftMap;
@@ -20,6 +20,9 @@ use crate::project::session::Session;
 use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve;
+
+/// How many times faster than its contact the tip of a cutter may go.
+const SWING: f64 = 10.0;
 
 /// A program: the extension of its file, and its text.
 pub(super) type ProgramText = (&'static str, String);
@@ -169,8 +172,17 @@ fn apt(job: &Job<'_>, target: &Target<'_, '_>, milled: &Milled<'_, '_>, request:
         let away = |row: &[f64; 6]| lifted(row, request.approach);
         let (first, last) = (&poses[0], &poses[poses.len() - 1]);
         let _ = writeln!(out, "RAPID\n{}", goto(&away(first)));
-        let _ = writeln!(out, "FEDRAT/{},MMPM", plain(request.feed));
-        poses.iter().for_each(|pose| out += &format!("{}\n", goto(pose)));
+        let _ = writeln!(out, "FEDRAT/{},MMPM\n{}", plain(request.feed), goto(first));
+        let mut feed = plain(request.feed);
+        for (pair, way) in poses.windows(2).zip(ways(target, milled, pass)) {
+            // FEDRAT is the tip's
+            let tip = (10.0 * request.feed * super::distance(&pair[0], &pair[1]) / way).round() / 10.0;
+            if tip != feed && tip > 0.0 {
+                let _ = writeln!(out, "FEDRAT/{},MMPM", plain(tip));
+                feed = tip;
+            }
+            let _ = writeln!(out, "{}", goto(&pair[1]));
+        }
         let _ = writeln!(out, "RAPID\n{}", goto(&away(last)));
     }
     out + "FINI\n"
@@ -200,6 +212,7 @@ fn program(
         let place = found.spaces.place(space);
         for (pass, along) in found.milled.poses.iter().enumerate() {
             let mut row: Vec<[f64; 6]> = along.iter().map(|pose| place.placed(pose)).collect();
+            let ways = ways(target, &found.milled, pass);
             let ends = [lifted(&row[0], request.approach), lifted(&row[row.len() - 1], request.approach)];
             row.insert(0, ends[0]);
             row.push(ends[1]);
@@ -208,18 +221,18 @@ fn program(
             } else {
                 format!("pass {}", pass + 1)
             };
-            poses.push((name, machine.axes.along(&row), row));
+            poses.push((name, machine.axes.along(&row), row, ways));
         }
     }
-    let rows: Vec<&[Vec<f64>]> = poses.iter().map(|(_, rows, _)| rows.as_slice()).collect();
+    let rows: Vec<&[Vec<f64>]> = poses.iter().map(|(_, rows, ..)| rows.as_slice()).collect();
     let hull = found.spaces.hull(&found.milled.lattice, &found.guarded);
     let Retracts { home, end, is_upright, of_passes } = retracts(machine, &rows, (hull, request.tool_centre_control));
-    let passes = poses.into_iter().zip(of_passes).map(|((name, rows, poses), [approach, away])| ProgramPass {
+    let passes = poses.into_iter().zip(of_passes).map(|((name, rows, poses, ways), [approach, away])| ProgramPass {
         name,
         approach,
         rows,
         tips: poses.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
-        ways: poses.windows(2).map(|pair| super::distance(&pair[0], &pair[1]).max(1e-9)).collect(),
+        ways: [&[request.approach], &ways[..], &[request.approach]].concat(),
         away,
     });
     let passes = passes.collect();
@@ -250,6 +263,20 @@ fn program(
         spindle: request.spindle,
         words: if request.tool_centre_control { WordsOf::Tip } else { WordsOf::Axes },
     }
+}
+
+/// The ways of the contact between the positions of a pass, mm. Where the cutter turns about a contact that hardly moves, its tip goes no faster than
+/// [`SWING`] times the feed; a side touches along a line, and its way is that of the tip.
+fn ways(target: &Target<'_, '_>, milled: &Milled<'_, '_>, pass: usize) -> Vec<f64> {
+    let is_side = matches!(target.milling.spacing, PassSpacing::Side(_));
+    let contact = |position: usize| milled.lattice.at(pass, milled.column(target, pass, position)).position;
+    let way = |(position, pair): (usize, &[[f64; 6]])| {
+        let tip = super::distance(&pair[0], &pair[1]).max(1e-9);
+        let [a, b] = [contact(position), contact(position + 1)];
+        let along = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
+        if is_side { tip } else { along.max(tip / SWING) }
+    };
+    milled.poses[pass].windows(2).enumerate().map(way).collect()
 }
 
 /// A program's extension and text.

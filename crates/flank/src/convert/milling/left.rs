@@ -2,7 +2,7 @@
 
 use flank_chain_dsl::Job;
 use flank_export::{Axis, Dataset, Field, Header, Patch, Values};
-use flank_solver::{LeftOver, SweptCutter};
+use flank_solver::{LeftOver, SpacePlace, SweptCutter};
 use rayon::prelude::*;
 
 use super::left_at;
@@ -35,11 +35,23 @@ impl LeftMap {
         swept: &SweptCutter,
         counts: [usize; 2],
     ) -> LeftMap {
+        LeftMap::in_space(target, fields, swept, (counts, SpacePlace::default(), f64::NEG_INFINITY))
+    }
+
+    /// The same where the surface stands in another space; of what is not above `enough`, mm, any height that is not.
+    pub(super) fn in_space(
+        target: &Target<'_, '_>,
+        fields: &Fields,
+        swept: &SweptCutter,
+        (counts, stands, enough): ([usize; 2], SpacePlace, f64),
+    ) -> LeftMap {
         let [rows, columns] = middles(counts);
         let stock = target.milling.stock;
         let at = |place: usize| {
             let line = fields.surface.at([rows[place / counts[1]], columns[place % counts[1]]]);
-            swept.left(&line).map(|left| LeftOver { height: left.height - stock, ..left })
+            swept
+                .left_until(&stands.placed(&line), stock + enough)
+                .map(|left| LeftOver { height: left.height - stock, ..left })
         };
         LeftMap { counts, left: (0..counts[0] * counts[1]).into_par_iter().map(at).collect() }
     }
@@ -76,9 +88,13 @@ impl LeftMap {
         self.left.iter().filter(|left| left.is_none()).count()
     }
 
+    pub(super) fn points(&self) -> usize {
+        self.left.len()
+    }
+
     pub(super) fn result(&self, target: &Target<'_, '_>) -> HeightMap {
         let most = self.highest();
-        let least = self.places().reduce(|a, b| if b.height < a.height { b } else { a });
+        let least = self.deepest().map(|(left, _)| left);
         HeightMap {
             rows: self.counts[0],
             columns: self.counts[1],

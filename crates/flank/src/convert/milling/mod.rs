@@ -11,6 +11,7 @@ mod iso;
 mod klartext;
 mod left;
 mod machine;
+mod measured;
 mod obstacles;
 mod on_page;
 mod patch;
@@ -210,7 +211,7 @@ fn of_milling(
     let Worked { target, mut result, found } = worked(job, milling, request, session)?;
     if let Some(found @ Found { milled, map, .. }) = &found {
         let read = match (&request.verify, &milled.machine) {
-            (Some(path), Some(machine)) => Some(verify::program(path, &target, found, machine)?),
+            (Some(path), Some(machine)) => Some(verify::program((path, request.spaces), &target, found, machine)?),
             _ => None,
         };
         result.verified = read.as_ref().map(|read| read.result(&target));

@@ -25,6 +25,8 @@ use crate::project::units;
 pub(super) struct Kept<'k> {
     pub(super) name: String,
     pub(super) obstacle: Obstacle,
+    /// How far the polynomials may be off, mm.
+    pub(super) off: f64,
     pub(super) place: Box<dyn Fn([f64; 2]) -> String + 'k>,
 }
 
@@ -98,8 +100,9 @@ pub(super) fn kept<'j, 'g>(
 }
 
 fn of_surface<'k, 'g: 'k>(patch: Patch<'k, 'g>) -> Result<Kept<'k>, NotDone> {
-    let obstacle = Obstacle::new(patch.field()?);
-    Ok(Kept { name: patch.name().to_string(), obstacle, place: Box::new(move |shares| patch.place(shares)) })
+    let (field, off) = patch.field()?;
+    let obstacle = Obstacle::new(field);
+    Ok(Kept { name: patch.name().to_string(), obstacle, off, place: Box::new(move |shares| patch.place(shares)) })
 }
 
 /// A piece of a tool that stands still against the work.
@@ -144,7 +147,8 @@ fn of_fixture<'k, 'g>(
         let found = field(counts);
         off = found.tail();
         if off <= NEAR {
-            return Ok(Kept { name: piece.name.clone(), obstacle: Obstacle::new(found), place: Box::new(place) });
+            let obstacle = Obstacle::new(found);
+            return Ok(Kept { name: piece.name.clone(), obstacle, off: NEAR, place: Box::new(place) });
         }
     }
     Err(rough(&piece.name, off))
@@ -250,9 +254,9 @@ fn least(
         foot: foot.clone(),
         proven: None,
     };
-    let not_clear = (nearest.distance < clearance.distance - NEAR).then(|| {
+    let not_clear = (nearest.distance < clearance.distance - of.off).then(|| {
         let ClearanceKept { surface, body, wanted, least, .. } = &kept;
-        let message = if *least < -NEAR {
+        let message = if *least < -of.off {
             format!("{body} cuts {:.4} mm into {surface} while the cutter is at {place}", -least)
         } else {
             format!(

@@ -10,9 +10,12 @@ use crate::solve;
 use crate::solve::reasons;
 
 /// Rows and columns of exact points that polynomials go through, until these are as near as [`NEAR`].
-pub(super) const GRIDS: [[usize; 2]; 4] = [[13, 17], [21, 33], [33, 65], [49, 129]];
+pub(super) const GRIDS: [[usize; 2]; 5] = [[13, 17], [21, 33], [33, 65], [49, 129], [129, 65]];
 /// How near a polynomial is to the surface and to the cutter's pose, mm and radians.
 pub(super) const NEAR: f64 = 1e-10;
+/// How near it is enough to be where a surface bends at once, as where a relief begins, mm: words of programs have a last decimal of ten times as
+/// much.
+pub(super) const ENOUGH: f64 = 1e-5;
 
 /// A part of a surface.
 pub(super) struct Patch<'j, 'g> {
@@ -170,21 +173,39 @@ impl<'j, 'g> Patch<'j, 'g> {
         Ok(Lattice { shares, frames: found, beyond })
     }
 
-    /// Position and normal as polynomials that are as near as [`NEAR`].
+    /// Position and normal as polynomials that are as near as [`NEAR`], or else as [`ENOUGH`], and how near they are, mm.
     ///
     /// # Errors
     /// What the surface does not have, or that its polynomials do not come as near.
-    pub(super) fn field(&self) -> Result<PoseField, NotDone> {
-        let mut off = f64::INFINITY;
+    pub(super) fn field(&self) -> Result<(PoseField, f64), NotDone> {
+        let mut rougher: Option<(PoseField, [Vec<f64>; 2])> = None;
         for counts in GRIDS {
-            let field = point_field(&self.lattice(counts.map(Chart::shares))?);
-            off = field.tail();
-            if off <= NEAR {
-                return Ok(field);
+            let lattice = self.lattice(counts.map(Chart::shares))?;
+            let field = point_field(&lattice);
+            if field.tail() <= NEAR {
+                return Ok((field, NEAR));
             }
+            rougher = Some((field, lattice.shares));
         }
-        Err(rough(self.name(), off))
+        let (field, shares) = rougher.expect("there are counts");
+        let off = self.off_between(&field, &shares)?;
+        if off <= ENOUGH { Ok((field, off)) } else { Err(rough(self.name(), off)) }
     }
+
+    /// How far polynomials are off along the normal, half-way between the shares of the points that they go through, mm.
+    fn off_between(&self, field: &PoseField, shares: &[Vec<f64>; 2]) -> Result<f64, NotDone> {
+        let lattice = self.lattice(shares.each_ref().map(|nodes| halfway(nodes)))?;
+        let off = |(shares, frame): ([f64; 2], &SurfaceFrame)| {
+            let near = field.at(shares);
+            (0..3).map(|k| (near[k] - frame.position[k]) * frame.normal[k]).sum::<f64>().abs()
+        };
+        Ok(lattice.each().map(off).fold(0.0, f64::max))
+    }
+}
+
+/// The middles between numbers.
+pub(super) fn halfway(nodes: &[f64]) -> Vec<f64> {
+    nodes.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect()
 }
 
 /// That no polynomials come near enough to a surface.

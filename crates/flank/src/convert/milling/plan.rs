@@ -1,6 +1,7 @@
 //! How many passes, how many blocks, and what these leave.
 
 use flank_chain_dsl::{BlockLength, PassSpacing};
+use flank_export::fixed;
 use flank_solver::{Cusp, PoseSeries, cusp, left_by_block, lowest_beside, peak};
 use rayon::prelude::*;
 
@@ -15,6 +16,14 @@ const MOST: usize = 100_000;
 const COLUMNS: usize = 17;
 /// The same while the number of passes is looked for.
 const FEW_COLUMNS: usize = 5;
+/// Passes with which the search for their number begins ...
+const BEGUN: usize = 33;
+/// ... and so many times closer than the scallop asks for it looks for passes that meet: ridges are lower by the square of that.
+const CLOSER: f64 = 8.0;
+/// A ridge between the places that are looked at while their number is looked for is higher by less than this factor: elsewhere it has another reason.
+const MISSED: f64 = 1.25;
+/// Gaps whose ridges are looked at together; where one has none, no more follow. They become more and more.
+const TOGETHER: [usize; 2] = [4, 256];
 /// Passes whose blocks are looked at while their number is looked for.
 const FEW_PASSES: usize = 5;
 /// Of a ridge no more than this share of the passes is missing at their ends.
@@ -89,6 +98,11 @@ impl Planner<'_, '_, '_> {
         let along = evenly(self.positions(&passes)?);
         let (cusp, short) = self.highest_cusp(&passes)?;
         let cusp = LeftAt { height: cusp.height - self.stock(), ..cusp };
+        if let PassSpacing::Scallop(wanted) = self.target.milling.spacing
+            && cusp.height > MISSED * wanted
+        {
+            return Err(self.too_high(cusp, passes.len(), wanted));
+        }
         let blocks = self.left_by_blocks(&passes, &along, &(0..passes.len()).collect::<Vec<usize>>())?;
         let steps = |k: usize, count: usize| {
             let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[k])).fold(0.0, f64::max);
@@ -118,49 +132,68 @@ impl Planner<'_, '_, '_> {
             let left = self.cusps(&evenly(count), &evenly(FEW_COLUMNS), None)?;
             Ok(left.iter().map(|left| left.height - self.stock()).fold(0.0, f64::max))
         };
-        // few passes may be too far apart to meet
-        let (mut count, mut height) = (33, highest(33));
-        while height.is_err() && count < 600 {
-            count = 2 * count - 1;
-            height = highest(count);
-        }
-        let mut height = height?;
-        let (mut low, mut high) = (1, None);
-        for _ in 0..40 {
-            if height <= wanted {
-                high = Some(count);
-            } else {
-                low = count;
-            }
-            // cusps grow with the square of the distance
-            let guess = ((count - 1) as f64 * (height / wanted).sqrt()).ceil() as usize + 1;
-            count = match high {
-                Some(high) if high <= low + 1 => return Ok(high),
-                Some(high) => guess.clamp(low + 1, high - 1),
-                None => guess.max(low + 1),
+        // between `low`, which are too few, and `high`, which are enough
+        let (mut low, mut high, mut count) = (1, None, BEGUN);
+        let most = self.most_apart(wanted);
+        loop {
+            // cusps grow with the square of the distance; few passes may be too far apart to meet
+            let guess = match highest(count) {
+                Ok(height) => {
+                    (low, high) = if height <= wanted { (low, Some(count)) } else { (count, high) };
+                    Some(((count - 1) as f64 * (height / wanted).sqrt()).ceil().min(2.0 * MOST as f64) as usize + 1)
+                }
+                Err(missing) if high.is_none() && count > most => return Err(missing),
+                Err(_) => {
+                    low = count;
+                    None
+                }
+            };
+            count = match (high, guess) {
+                (Some(high), _) if high <= low + 1 => return Ok(high.max(2)),
+                (Some(high), Some(guess)) => guess.clamp(low + 1, high - 1),
+                (Some(high), None) => low.midpoint(high),
+                (None, Some(guess)) => guess.max(low + 1),
+                (None, None) => 2 * count - 1,
             };
             if count > MOST {
                 return Err(self.too_many(count));
             }
-            if count < 2 {
-                return Ok(2);
-            }
-            // so few do not meet
-            height = highest(count).unwrap_or(f64::INFINITY);
-            if !height.is_finite() {
-                low = count;
-                count = high.map_or(2 * count, |high| (low + high).div_ceil(2).min(high));
-                height = if Some(count) == high { wanted } else { highest(count).unwrap_or(f64::INFINITY) };
-            }
         }
-        Ok(high.unwrap_or(count))
+    }
+
+    /// Passes that leave so much less than `wanted`, mm, by the radius across the feed, that there is no point in more which do not meet either.
+    fn most_apart(&self, wanted: f64) -> usize {
+        let bending = self.fields.lattice.each().filter_map(|(shares, frame)| {
+            let bending =
+                self.target.pose(shares, frame, self.cutter, 1.0).ok()?.bending(frame, &self.cutter.cutting)?;
+            (bending.effective_radius > 0.0).then_some(bending.effective_radius)
+        });
+        let radius = bending.fold(f64::INFINITY, f64::min);
+        let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[0])).fold(0.0, f64::max);
+        let count = widest / (8.0 * wanted * radius).sqrt();
+        // a radius that is not known or not bounded says nothing
+        if count.is_finite() { (CLOSER * count).clamp(BEGUN as f64, MOST as f64) as usize } else { BEGUN }
+    }
+
+    /// That a ridge is higher than is asked for, which passes closer together do not change: it lies at the end of the cutter's arc.
+    fn too_high(&self, cusp: LeftAt, passes: usize, wanted: f64) -> NotDone {
+        let [height, wanted] = [cusp.height, wanted].map(|height| fixed(1e3 * height, 4));
+        let place = self.target.place(cusp.shares);
+        let message = format!(
+            "{passes} passes leave a ridge of {height} um at {place}, {wanted} um are asked for: what cuts beside the passes ends there"
+        );
+        let way = "lean the cutter otherwise, or take one with a larger arc; `step` and `by` take passes as they are";
+        NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way.to_string()])
     }
 
     fn too_many(&self, count: usize) -> NotDone {
         let name = &self.target.milling.name;
         let message = format!("{name}: it would take {count} passes; at most {MOST} are made");
-        let way = "allow a higher scallop or a wider step, or take a cutter with a larger radius".to_string();
-        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way])
+        let way = match self.target.milling.spacing {
+            PassSpacing::Scallop(_) => "allow a higher scallop, or take a cutter with a larger radius",
+            _ => "allow a wider step",
+        };
+        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way.to_string()])
     }
 
     /// The highest cusp between passes, and the ridge that ends first.
@@ -207,9 +240,17 @@ impl Planner<'_, '_, '_> {
             across.iter().zip(columns).map(at).collect()
         };
         // the first place is told, whichever thread finds one first
-        let found: Vec<Result<Vec<LeftAt>, [f64; 2]>> = gaps.into_par_iter().map(of_gap).collect();
-        let found: Result<Vec<Vec<LeftAt>>, [f64; 2]> = found.into_iter().collect();
-        found.map(|found| found.concat()).map_err(|shares| {
+        let (mut found, mut next, mut together) = (Ok(Vec::new()), gaps.start, TOGETHER[0]);
+        while let (Ok(all), true) = (&mut found, next < gaps.end) {
+            let some = next..(next + together).min(gaps.end);
+            (next, together) = (some.end, (2 * together).min(TOGETHER[1]));
+            let ridges: Vec<Result<Vec<LeftAt>, [f64; 2]>> = some.into_par_iter().map(of_gap).collect();
+            match ridges.into_iter().collect::<Result<Vec<Vec<LeftAt>>, [f64; 2]>>() {
+                Ok(ridges) => all.extend(ridges.concat()),
+                Err(shares) => found = Err(shares),
+            }
+        }
+        found.map_err(|shares| {
             let place = self.target.place(shares);
             let message = format!("the passes beside {place} do not meet: what they leave between them is no ridge");
             let way = match self.cutter.has_edge() {
@@ -289,7 +330,11 @@ pub(super) fn positions(
     let too_many = |count: usize| {
         let name = &target.milling.name;
         let message = format!("{name}: it would take {count} positions on a pass; at most {MOST} are made");
-        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec!["allow a larger chord error".to_string()])
+        let way = match target.milling.blocks {
+            BlockLength::Chord(_) => "allow a larger chord error",
+            BlockLength::Step(_) | BlockLength::Count(_) => "allow a longer step",
+        };
+        NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way.to_string()])
     };
     let wanted = match target.milling.blocks {
         BlockLength::Count(count) => return Ok(count),

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 use super::Milled;
 use super::obstacles::Kept;
+use super::patch::NEAR;
 use super::plan::straight;
 use super::result::ProvenClearance;
 use super::target::Target;
@@ -29,12 +30,14 @@ pub(super) fn proven(
         Some(axes) => axes.straight(&rows[pass][k], &rows[pass][k + 1]),
         None => straight(poses[pass][k], poses[pass][k + 1]),
     };
+    // the surface may be nearer than its polynomials; by less than numbers are told it is not looked at
+    let off = if of.off > NEAR { of.off } else { 0.0 };
     let proof = ClearProof::new(&of.obstacle, body);
     let blocks: Vec<[usize; 2]> =
         (0..poses.len()).flat_map(|pass| (0..poses[pass].len() - 1).map(move |k| [pass, k])).collect();
     let mut found: Vec<Clear> = Vec::with_capacity(blocks.len());
     for together in blocks.chunks(TOGETHER) {
-        let of_block = |[pass, k]: &[usize; 2]| proof.along(&block(*pass, *k), limit, MOST_BOXES);
+        let of_block = |[pass, k]: &[usize; 2]| proof.along(&block(*pass, *k), limit + off, MOST_BOXES);
         found.extend(together.par_iter().map(of_block).collect::<Vec<Clear>>());
         if found.iter().any(|found| *found != Clear::Proven) {
             break;

@@ -160,7 +160,10 @@ pub struct VerifiedProgram {
     pub blocks: usize,
     /// Whether its words are of the cutter in the work (tool-centre control), else of the axes.
     pub tool_centre_control: bool,
-    /// At points of the milled part.
+    /// Spaces of the work that are measured, counted from one.
+    pub spaces: Vec<u32>,
+    /// At points of the milled part in the first of them; but the most is that of all points of all of them, and the least is solved: where a
+    /// block of the program is deepest, between points, too.
     #[serde(flatten)]
     pub map: HeightMap,
 }

@@ -68,6 +68,11 @@ impl Spaces {
         }
     }
 
+    /// All that one milling is repeated in: where they differ, the milled one alone.
+    pub(super) fn alike(&self) -> Vec<SpacePlace> {
+        if self.differ.is_some() { vec![SpacePlace::default()] } else { self.places() }
+    }
+
     /// All of them.
     pub(super) fn places(&self) -> Vec<SpacePlace> {
         (0..self.count).map(|space| self.place(space)).collect()

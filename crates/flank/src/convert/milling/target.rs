@@ -2,14 +2,18 @@
 
 use std::ops::Deref;
 
-use flank_chain_dsl::{Job, Milling, PassSpacing};
+use flank_chain_dsl::{BlockLength, Job, Milling, PassSpacing};
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{Chart, CutterPose, Lean, NoPose, OutlinePiece, PoseField, SurfaceFrame};
 
 use super::cutter::MillingCutter;
-use super::patch::{GRIDS, Lattice, NEAR, Patch, point_field, rough};
+use super::patch::{ENOUGH, GRIDS, Lattice, NEAR, Patch, halfway, point_field, rough};
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::session::Session;
+
+/// Polynomials that are not as near as [`NEAR`] are near enough where they are off by no more than this share of
+/// the scallop and of the chord that are asked for.
+const SHARE: f64 = 0.01;
 
 /// A surface that is milled.
 pub(super) struct Target<'j, 'g> {
@@ -111,6 +115,7 @@ impl<'j, 'g> Target<'j, 'g> {
         });
         let stock = self.milling.stock;
         let Some(radius) = arcs.reduce(f64::min).filter(|radius| stock <= -radius) else { return Ok(()) };
+        let [stock, radius] = [stock, radius].map(|x| (1e9 * x).round() / 1e9);
         let message = format!(
             "`stock {stock} mm` of {} lies deeper than an arc of {} is round: its radius is {radius} mm",
             self.milling.name, self.milling.cutter_name
@@ -119,32 +124,74 @@ impl<'j, 'g> Target<'j, 'g> {
         Err(NotDone::new(NotDoneKind::NotMilled, self.name(), message).with(vec![way]))
     }
 
-    /// Surface and cutter as polynomials that are as near as [`NEAR`].
+    /// Surface and cutter as polynomials that are as near as [`NEAR`], or else as heights ask for.
     ///
     /// # Errors
     /// What the surface does not have, or that its polynomials do not come as near.
     pub(super) fn fields(&self, cutter: &MillingCutter) -> Result<Fields, NotDone> {
-        let is_side = matches!(self.milling.spacing, PassSpacing::Side(_));
-        let mut off = f64::INFINITY;
+        let mut rougher = None;
         for counts in GRIDS {
-            let lattice = self.lattice(counts.map(Chart::shares))?;
-            let surface = point_field(&lattice);
-            // with its side the cutter lies as leaves least, not as it is told to lean
-            let directions: &[f64] = match self.milling.both_ways {
-                _ if is_side => &[],
-                true => &[1.0, -1.0],
-                false => &[1.0],
-            };
-            let poses = directions.iter().map(|forward| {
-                let rows = lattice.each().map(|(shares, frame)| Ok(self.pose(shares, frame, cutter, *forward)?.row()));
-                Ok(PoseField::through(rows.collect::<Result<Vec<[f64; 6]>, NotDone>>()?, counts))
-            });
-            let poses = poses.collect::<Result<Vec<PoseField>, NotDone>>()?;
-            off = poses.iter().map(PoseField::tail).fold(surface.tail(), f64::max);
-            if off <= NEAR {
-                return Ok(Fields { surface, cutter: poses, off, lattice });
+            let fields = self.fields_through(counts, cutter)?;
+            if fields.off <= NEAR {
+                return Ok(fields);
+            }
+            rougher = Some(fields);
+        }
+        // a profile with a relief bends at once where that begins: coefficients tell little of how near such polynomials are
+        let mut fields = rougher.expect("there are counts");
+        fields.off = self.measured(&fields, cutter)?;
+        if fields.off <= self.needed() { Ok(fields) } else { Err(rough(self.name(), fields.off)) }
+    }
+
+    /// How near polynomials have to be, mm.
+    fn needed(&self) -> f64 {
+        let scallop = if let PassSpacing::Scallop(height) = self.milling.spacing { height } else { f64::INFINITY };
+        let chord = if let BlockLength::Chord(chord) = self.milling.blocks { chord } else { f64::INFINITY };
+        let asked = SHARE * scallop.min(chord);
+        if asked.is_finite() { asked } else { ENOUGH }
+    }
+
+    /// Surface and cutter through exact points at so many rows and columns.
+    fn fields_through(&self, counts: [usize; 2], cutter: &MillingCutter) -> Result<Fields, NotDone> {
+        let lattice = self.lattice(counts.map(Chart::shares))?;
+        let surface = point_field(&lattice);
+        let poses = self.directions().iter().map(|forward| {
+            let rows = lattice.each().map(|(shares, frame)| Ok(self.pose(shares, frame, cutter, *forward)?.row()));
+            Ok(PoseField::through(rows.collect::<Result<Vec<[f64; 6]>, NotDone>>()?, counts))
+        });
+        let cutter = poses.collect::<Result<Vec<PoseField>, NotDone>>()?;
+        let off = cutter.iter().map(PoseField::tail).fold(surface.tail(), f64::max);
+        Ok(Fields { surface, cutter, off, lattice })
+    }
+
+    /// The ways that passes run: with its side the cutter lies as leaves least, not as it is told to lean.
+    fn directions(&self) -> &'static [f64] {
+        match self.milling.both_ways {
+            _ if matches!(self.milling.spacing, PassSpacing::Side(_)) => &[],
+            true => &[1.0, -1.0],
+            false => &[1.0],
+        }
+    }
+
+    /// How far polynomials are off half-way between the points that they go through, mm: along the normal of the surface, and so far as that moves
+    /// the part of the cutter that touches.
+    fn measured(&self, fields: &Fields, cutter: &MillingCutter) -> Result<f64, NotDone> {
+        let lattice = self.lattice(fields.lattice.shares.each_ref().map(|nodes| halfway(nodes)))?;
+        let mut off: f64 = 0.0;
+        for (shares, frame) in lattice.each() {
+            let near = fields.surface.at(shares);
+            let along = (0..3).map(|k| (near[k] - frame.position[k]) * frame.normal[k]).sum::<f64>();
+            off = off.max(along.abs());
+            for (field, forward) in fields.cutter.iter().zip(self.directions()) {
+                let exact = self.pose(shares, frame, cutter, *forward)?;
+                let near = field.at(shares);
+                let tip = (0..3).map(|k| (near[k] - exact.tip[k]) * frame.normal[k]).sum::<f64>();
+                let arm = [0, 1, 2].map(|k| frame.position[k] - exact.tip[k]);
+                let height = (0..3).map(|k| arm[k] * exact.axis[k]).sum::<f64>();
+                let turned = (0..3).map(|k| (near[3 + k] - exact.axis[k]) * frame.normal[k]).sum::<f64>();
+                off = off.max((tip + height * turned).abs());
             }
         }
-        Err(rough(self.name(), off))
+        Ok(off)
     }
 }

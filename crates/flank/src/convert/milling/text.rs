@@ -95,6 +95,9 @@ fn of_program(program: &VerifiedProgram) -> Vec<(&'static str, String)> {
     let words = if program.tool_centre_control { "the cutter in the work" } else { "the axes" };
     let blocks = units::counted(*blocks, "cutting block");
     let mut facts = vec![("program", format!("{file}: {blocks}, words of {words}"))];
+    if program.spaces.len() > 1 {
+        facts.push(("spaces", format!("{} of the work", program.spaces.len())));
+    }
     facts.extend(of_map(map));
     facts
 }

@@ -3,16 +3,17 @@
 use std::path::Path;
 
 use flank_chain_dsl::BlockLength;
-use flank_solver::{PoseSeries, SweptCutter};
+use flank_solver::{PoseSeries, SpacePlace, SweptCutter};
 
 use super::Found;
 use super::block::Motion;
 use super::guard::Guards;
 use super::left::LeftMap;
 use super::machine::{FreeAxes, Machine, moved_by};
+use super::measured::{Blocks, Measured, rounded};
 use super::plan::LeftAt;
 use super::program::{Move, Program, read};
-use super::result::VerifiedProgram;
+use super::result::{HeightMap, VerifiedProgram};
 use super::target::{Fields, Target};
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
@@ -31,20 +32,20 @@ pub(super) struct ReadProgram {
     has_end: bool,
     has_unit: bool,
     pub(super) map: LeftMap,
-    /// The deepest that cutting blocks and rapids go, and in which line.
-    deepest: [Option<(LeftAt, usize)>; 2],
+    /// What cutting blocks leave in all spaces.
+    measured: Measured,
+    /// The deepest that rapids go at the points of the map, and in which line.
+    rapid: Option<(LeftAt, usize)>,
     /// The deepest of them that cut into what is looked at beside the map, in words.
     struck: [Option<NotDone>; 2],
-    /// How deep they may go, mm.
-    promised: f64,
 }
 
-/// What a program leaves at the points of the map of what is planned.
+/// What a program leaves, in as many spaces as are asked for; where that is one, in all that the work has if the program cuts in another, too.
 ///
 /// # Errors
 /// If the file cannot be read, or has words that are not followed.
 pub(super) fn program(
-    path: &Path,
+    (path, asked): (&Path, u32),
     target: &Target<'_, '_>,
     found: &Found<'_, '_>,
     machine: &Machine<'_, '_>,
@@ -53,6 +54,11 @@ pub(super) fn program(
     let bytes = std::fs::read(path).map_err(|error| Failure::Input(format!("`{shown}` cannot be read: {error}")))?;
     // remarks are in whatever letters a control has
     let text = String::from_utf8_lossy(&bytes);
+    if let Some(why) = no_program(&text) {
+        return Err(Failure::Input(format!(
+            "`{shown}` is no NC program: {why}; programs in the words of Fanuc, Siemens 840D, LinuxCNC and Heidenhain's Klartext are read"
+        )));
+    }
     let Program { moves, has_end, has_unit } =
         read(&text, machine).map_err(|fault| Failure::Input(format!("{shown}:{fault}")))?;
     let promised = promised(target, found, machine);
@@ -66,16 +72,17 @@ pub(super) fn program(
         Some(guards.told(&what, (hit, count), &no_deeper(promised)))
     });
     let (rapids, cuts): (Vec<Move>, Vec<Move>) = moves.into_iter().partition(|one| one.motion == Motion::Rapid);
-    let left_by = |moves: &[Move]| {
-        let blocks: Vec<PoseSeries> = moves.iter().map(|one| one.series(&machine.axes)).collect();
-        let swept = SweptCutter::of_blocks(blocks, &found.cutter.cutting);
-        let map = LeftMap::of_cutter(target, &found.fields, &swept, found.map.counts);
-        let deepest = map.deepest().map(|(left, number)| (left, moves[number].line));
-        (map, deepest)
-    };
-    let part = MilledPart::new(&found.fields, found.cutter.cutting.reach());
     let (blocks, has_tip_control) = (cuts.len(), cuts.iter().any(|cut| cut.has_tip_control));
-    let [(map, cut), (by_rapids, rapid)] = [cuts, rapids].map(|moves| left_by(&part.near(moves, &machine.axes)));
+    let part = |places: &[SpacePlace]| MilledPart::new(&found.fields, places, found.cutter.cutting.reach());
+    let series = |moves: &[Move]| moves.iter().map(|one| one.series(&machine.axes)).collect::<Vec<PoseSeries>>();
+    let cuts = part(&found.spaces.alike()).near(cuts, &machine.axes);
+    let lines = cuts.iter().map(|cut| cut.line).collect();
+    let cuts = Blocks { series: series(&cuts), lines, has_tip_control };
+    let (measured, map) = Measured::of_blocks(cuts, target, found, (machine, asked, promised));
+    let rapids = part(&[SpacePlace::default()]).near(rapids, &machine.axes);
+    let swept = SweptCutter::of_blocks(series(&rapids), &found.cutter.cutting);
+    let by_rapids = LeftMap::of_cutter(target, &found.fields, &swept, found.map.counts);
+    let rapid = by_rapids.deepest().map(|(left, number)| (left, rapids[number].line));
     Ok(ReadProgram {
         file: shown,
         blocks,
@@ -83,10 +90,35 @@ pub(super) fn program(
         has_end,
         has_unit,
         map: map.cut_by(&by_rapids),
-        deepest: [cut, rapid],
+        measured,
+        rapid,
         struck,
-        promised,
     })
+}
+
+/// Why a file is no program at all, in words: bytes that no text has, or nothing that any control would do.
+fn no_program(text: &str) -> Option<&'static str> {
+    // tapes begin and end with other letters than those of text, and old editors end with one
+    let is_strange = |letter: char| letter.is_control() && !"\t\n\x0b\x0c\r\x03\x1a\x7f".contains(letter);
+    // the letters of old controls that are no UTF-8 are controls of no kind
+    let strange = text.chars().filter(|letter| is_strange(*letter)).count();
+    if text.starts_with("PK\x03\x04") || text.contains('\0') || 50 * strange > text.len() {
+        return Some("it is no text");
+    }
+    let is_word = |word: &str| {
+        let word = word.trim_start_matches(|letter: char| letter.is_ascii_digit());
+        let mut letters = word.chars();
+        let code = letters.next().is_some_and(|letter| "GMgm".contains(letter));
+        code && letters.next().is_some_and(|letter| letter.is_ascii_digit())
+    };
+    let is_of_program = |line: &str| {
+        let line = line.trim_start_matches(['/', ' ', '\t']);
+        let line = line.strip_prefix(['N', 'n']).unwrap_or(line);
+        line.split_whitespace().any(is_word) || line.to_ascii_uppercase().contains("BEGIN PGM")
+    };
+    let is_empty = text.trim().is_empty();
+    let mut lines = text.split(['\n', '\r']);
+    (!is_empty && !lines.any(is_of_program)).then_some("no line of it has a G or M word, or BEGIN PGM")
 }
 
 /// The rapid of an own program that cuts in deepest, in words; such a program is not written.
@@ -117,12 +149,10 @@ fn promised(target: &Target<'_, '_>, found: &Found<'_, '_>, machine: &Machine<'_
     let by_passes = found.map.deepest().map_or(0.0, |(left, _)| (-left.height).max(0.0));
     let chord = if let BlockLength::Chord(chord) = target.milling.blocks { chord } else { 0.0 };
     let by_blocks = chord.max(-found.milled.plan.blocks[1].height);
-    let reach = found.cutter.cutting.reach();
-    let rounded = found.milled.axes.iter().flatten().map(|row| machine.rounded(row, reach));
-    by_passes + by_blocks + rounded.fold(0.0, f64::max)
+    by_passes + by_blocks + rounded(found, machine)
 }
 
-/// A ball about what is milled, and how far the cutter reaches from its tip, mm.
+/// A ball about what is milled in all spaces, and how far the cutter reaches from its tip, mm.
 struct MilledPart {
     center: [f64; 3],
     radius: f64,
@@ -130,8 +160,16 @@ struct MilledPart {
 }
 
 impl MilledPart {
-    fn new(fields: &Fields, reach: f64) -> MilledPart {
-        let points: Vec<[f64; 3]> = fields.lattice.frames.iter().map(|frame| frame.position).collect();
+    fn new(fields: &Fields, places: &[SpacePlace], reach: f64) -> MilledPart {
+        let points = places.iter().flat_map(|place| {
+            let frames = fields.lattice.frames.iter();
+            frames.map(|frame| {
+                let [x, y, z] = frame.position;
+                let [x, y, z, ..] = place.placed(&[x, y, z, 0.0, 0.0, 1.0]);
+                [x, y, z]
+            })
+        });
+        let points: Vec<[f64; 3]> = points.collect();
         let center = [0, 1, 2].map(|k| points.iter().map(|point| point[k]).sum::<f64>() / points.len() as f64);
         let radius = points.iter().map(|point| distance(*point, center)).fold(0.0, f64::max);
         MilledPart { center, radius, reach }
@@ -167,11 +205,17 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 
 impl ReadProgram {
     pub(super) fn result(&self, target: &Target<'_, '_>) -> VerifiedProgram {
+        let map = self.map.result(target);
         VerifiedProgram {
             file: self.file.clone(),
             blocks: self.blocks,
             tool_centre_control: self.tool_centre_control,
-            map: self.map.result(target),
+            spaces: self.measured.spaces.iter().map(|space| space + 1).collect(),
+            map: HeightMap {
+                left: self.measured.ends(target, self.rapid.map(|(left, _)| left)),
+                untouched: self.measured.untouched().max(map.untouched),
+                ..map
+            },
         }
     }
 
@@ -185,40 +229,40 @@ impl ReadProgram {
     /// What it does not do as the milling says.
     pub(super) fn missed(&self, target: &Target<'_, '_>) -> Vec<NotDone> {
         let name = target.name();
-        let told = |kind: NotDoneKind, message: String, way: String| NotDone::new(kind, name, message).with(vec![way]);
         let unended = (!self.has_end).then(|| {
             let message = format!("{} does not say that it ends", self.file);
-            told(NotDoneKind::NotMilled, message, "it may be cut off: M30 or M2 is missing, or END PGM".to_string())
+            let way = "it may be cut off: M30 or M2 is missing, or END PGM".to_string();
+            NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way])
         });
-        let untouched = (self.map.untouched() > 0).then(|| {
-            let message = format!(
-                "{} does not pass over {} of {} points of {name}",
-                self.file,
-                self.map.untouched(),
-                self.map.counts.iter().product::<usize>()
-            );
-            told(
-                NotDoneKind::HeightUnknown,
-                message,
-                "blocks are missing, or go elsewhere: look at units and zero".to_string(),
-            )
-        });
-        let of_map = |(what, deepest): (&str, Option<(LeftAt, usize)>)| {
-            let (left, line) = deepest.filter(|(left, _)| left.height < -self.promised)?;
+        let promised = self.measured.promised;
+        let of_map = |what: &str, (left, space, line): (LeftAt, u32, usize)| {
+            let others = (what == "line" && self.measured.deep > 1)
+                .then(|| format!("of its blocks {} cut too deep, this one deepest", self.measured.deep));
             let message = format!(
                 "{what} {line} of {} cuts {:.4} mm into {name} at {}",
                 self.file,
                 -left.height,
-                target.place(left.shares)
+                in_space(target.place(left.shares), space)
             );
-            Some(told(NotDoneKind::TooDeep, message, no_deeper(self.promised)))
+            NotDone::new(NotDoneKind::TooDeep, name, message)
+                .with(others.into_iter().chain([no_deeper(promised)]).collect())
         };
+        let is_deep = |left: &LeftAt| left.height < -promised;
         let [cut, rapid] = &self.struck;
-        let cuts = of_map(("line", self.deepest[0])).into_iter().chain(cut.clone());
+        let deepest = self.measured.least.filter(|(left, ..)| is_deep(left)).map(|least| of_map("line", least));
+        let cuts = deepest.into_iter().chain(cut.clone());
         // what the map says of a rapid, the whole surface says better
-        let rapids = rapid.clone().or_else(|| of_map(("the rapid in line", self.deepest[1])));
-        unended.into_iter().chain(untouched).chain(cuts).chain(rapids).collect()
+        let rapids = rapid.clone().or_else(|| {
+            let (left, line) = self.rapid.filter(|(left, _)| is_deep(left))?;
+            Some(of_map("the rapid in line", (left, 0, line)))
+        });
+        unended.into_iter().chain(self.measured.missed(&self.file, target)).chain(cuts).chain(rapids).collect()
     }
+}
+
+/// A place in words, with its space where that is not the first.
+pub(super) fn in_space(place: String, space: u32) -> String {
+    if space == 0 { place } else { format!("{place} of space {}", space + 1) }
 }
 
 fn no_deeper(promised: f64) -> String {
