@@ -116,6 +116,54 @@ fn is_conforming(deck: &Deck, names: &[&str]) {
     assert_eq!(places.len(), deck.nodes.len(), "no two nodes in one place");
 }
 
+/// Flanks of 12 and 35 degrees: their fillets turn into the root at other places, and each side has its own rows above and below.
+#[test]
+fn sides_that_differ_have_rows_of_their_own() {
+    const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
+    let names = [
+        "BACK",
+        "BORE",
+        "FILLET_COAST_FILLET",
+        "FILLET_DRIVE_FILLET",
+        "FLANK_COAST",
+        "FLANK_DRIVE",
+        "FRONT",
+        "ROOT_ROOT",
+        "SIDE_1",
+        "SIDE_2",
+        "TIP",
+    ];
+    let angles = [("35 deg", "12 deg"), ("12 deg", "35 deg"), ("25 deg", "10 deg"), ("20 deg", "20 deg")];
+    for (order, (drive, coast)) in ORDERS.into_iter().flat_map(|order| angles.map(|of| (order, of))) {
+        let set = [("drive_angle", drive), ("coast_angle", coast)];
+        let (numbers, deck) = Asked { set: &set, order, ..Asked::new(SPEC, "asymmetric") }.only();
+        // with the same rows on both sides the least was 0.03
+        assert!(numbers.least_scaled_jacobian > 0.4, "{drive} {coast}: {numbers}");
+        let across = &numbers.elements.across;
+        let sides = [&across[..2], &across[3..]].map(|side| side.iter().sum::<usize>());
+        assert_eq!((sides[0], across[2] % 2), (sides[1], 0), "{across:?}");
+        if drive == coast {
+            assert_eq!((across[0], across[1]), (across[4], across[3]), "{across:?}");
+        }
+        is_conforming(&deck, &names);
+    }
+}
+
+/// A shaft beyond the teeth is what sections across these do not reach. Without it the same teeth have bricks.
+#[test]
+fn a_shaft_beyond_the_teeth_is_told_as_the_reason() {
+    const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
+    let (result, files) = Asked::new(SPEC, "shaft").meshed();
+    let [told] = result.not_done() else { panic!("{:?}", result.not_done()) };
+    assert!(files.is_empty() && told.kind == NotDoneKind::NoBricks, "{told}");
+    assert!(told.message.contains("`neck` of the outline goes on beyond these, by up to 12.0000 mm"), "{told}");
+    assert!(told.details[0].contains("a blank that ends with its teeth"), "{told}");
+    let printed = told.message.split("Jacobian is ").nth(1).and_then(|rest| rest.split(',').next());
+    let printed: f64 = printed.and_then(|number| number.parse().ok()).expect("a number");
+    assert!((-1.0..0.1).contains(&printed), "unit vectors have no larger determinant: {printed}");
+    assert!(Asked::new(SPEC, "asymmetric").meshed().0.is_complete());
+}
+
 #[test]
 fn bricks_share_their_faces_and_sides_match() {
     let single = [

@@ -2,6 +2,7 @@
 
 use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
+use crate::solid::bricks::layout;
 
 /// Samples of a line across a chart by which its length is measured.
 const SAMPLES: usize = 1024;
@@ -13,6 +14,8 @@ const TURN: f64 = 0.21;
 const GROWTH: f64 = 1.5;
 /// The thickness of bricks in the middle of a tooth, of those at a flank.
 const GRADING: f64 = 2.25;
+/// Rows by which the sides of a tooth may differ in where its core ends: the corners there lose less than by rows that are longer.
+const APART: usize = 2;
 /// Sections in which the land of a tooth is looked at.
 const LANDS: usize = 16;
 /// Bricks below the root at the most.
@@ -21,7 +24,7 @@ const MOST_BELOW: usize = 256;
 /// How many bricks a tooth is cut into.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrickCounts {
-    /// Across each chart of a space. The last has as many as the first, the last but one as the second; one in the middle has an even number.
+    /// Across each chart of a space: as many on one side of its middle as on the other. One in the middle has an even number.
     pub charts: Vec<usize>,
     /// Layers along flanks, fillets and roots.
     pub band: usize,
@@ -55,12 +58,52 @@ impl Body {
         if last.is_multiple_of(2) {
             charts[last / 2] = charts[last / 2].next_multiple_of(2);
         }
+        let charts = self.parting_alike(charts);
         let band = ((thickness as f64 / 3.0).round() as usize).max(1);
         let along = along.max(self.blank().rest().len()).max(1);
         let growth = GROWTH.powf(1.0 / finer);
         let layers = (1.0 + self.depth_below() * (growth - 1.0) / size).ln() / growth.ln();
         let rim = (layers.round() as usize).clamp(2, MOST_BELOW);
         BrickCounts { charts, band, core: thickness - 2 * band, rim, along }
+    }
+
+    /// Counts of charts that are the same on both sides, or with more on each where flanks lean so differently that the core of a tooth would end far
+    /// from where the one fillet or the other has turned for it: as many rows above that place on either side, and as many below.
+    fn parting_alike(&self, charts: Vec<usize>) -> Vec<usize> {
+        let depths = layout::depths(self, &charts);
+        if depths[0].abs_diff(depths[1]) < APART {
+            return charts;
+        }
+        let last = charts.len() - 1;
+        let at = |side: usize, k: usize| if side == 0 { k } else { last - k };
+        // the chart in which it lies, and how many rows of that are above
+        let place = |side: usize| {
+            let (mut k, mut above) = (0, depths[side]);
+            while above > charts[at(side, k)] {
+                above -= charts[at(side, k)];
+                k += 1;
+            }
+            (k, above)
+        };
+        let [(parting, first), (other, second)] = [place(0), place(1)];
+        let flanks = self.flanks();
+        if parting != other || 2 * parting >= last || parting <= flanks[0] || last - parting >= flanks[1] {
+            return charts;
+        }
+        let above = [first, second];
+        let below = [0, 1].map(|side| charts[at(side, parting)] - above[side]);
+        let most_below = below[0].max(below[1]).max(1);
+        let mut charts = charts;
+        let mut rows = [0; 2];
+        for side in [0, 1] {
+            let finer = most_below as f64 / below[side].max(1) as f64;
+            let own = (above[side] as f64 * finer).round() as usize;
+            charts[at(side, parting)] = own + most_below;
+            rows[side] = own + (0..parting).map(|k| charts[at(side, k)]).sum::<usize>();
+        }
+        let most = rows[0].max(rows[1]);
+        (0..2).for_each(|side| charts[flanks[side]] += most - rows[side]);
+        charts
     }
 
     /// How wide the land of a tooth is where it is narrowest, mm: 0 where teeth end in an edge.

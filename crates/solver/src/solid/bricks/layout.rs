@@ -7,7 +7,7 @@
 use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
 use crate::solid::bricks::BrickOrder;
-use crate::solid::bricks::counts::BrickCounts;
+use crate::solid::bricks::counts::{BrickCounts, even_shares};
 use crate::solid::bricks::section::normals;
 
 /// The core of a tooth ends where the band has turned by so much from the flank's direction, as a sine: the cells that meet there have the best
@@ -223,9 +223,22 @@ fn chart_of_row(counts: &BrickCounts, profile: usize) -> impl Fn(Hand, usize) ->
 
 /// Rows of corners from the tip to where the tooth's core ends, half-way along.
 fn depth(body: &Body, counts: &BrickCounts, profile: usize) -> usize {
-    let stations = counts.stations(body, BrickOrder::First);
-    let line: Vec<Polar> = body.lines(&stations.across, &[0.5]).remove(0);
-    let normals = normals(&line, body.middle_below(), body.arrangement());
-    let turned = |row: usize| normals[row][1].max(normals[2 * profile - row][1]);
-    (1..profile).rev().find(|row| turned(*row) <= TURNED).unwrap_or(1)
+    let turned = turned(body, &counts.charts);
+    let most = |row: usize| turned[row].max(turned[2 * profile - row]);
+    (1..profile).rev().find(|row| most(*row) <= TURNED).unwrap_or(1)
+}
+
+/// Rows of corners from the tip to where each side of a space, half-way along, has turned so far that the core of a tooth ends there.
+pub(crate) fn depths(body: &Body, charts: &[usize]) -> [usize; 2] {
+    let turned = turned(body, charts);
+    let (last, profile) = (turned.len() - 1, turned.len() / 2);
+    let depth = |turned: &dyn Fn(usize) -> f64| (1..profile).rev().find(|row| turned(*row) <= TURNED).unwrap_or(1);
+    [depth(&|row| turned[row]), depth(&|row| turned[last - row])]
+}
+
+/// How far the corners of a line across a space have turned from the direction of the depth, as a sine.
+fn turned(body: &Body, charts: &[usize]) -> Vec<f64> {
+    let across: Vec<Vec<f64>> = charts.iter().enumerate().map(|(k, count)| even_shares(body, k, *count)).collect();
+    let line: Vec<Polar> = body.lines(&across, &[0.5]).remove(0);
+    normals(&line, body.middle_below(), body.arrangement()).iter().map(|normal| normal[1]).collect()
 }
