@@ -124,9 +124,9 @@ fn sides_that_differ_have_rows_of_their_own() {
         "BACK",
         "BORE",
         "FILLET_COAST_FILLET",
-        "FILLET_DRIVE_FILLET",
+        "FILLET_LOADED_FILLET",
         "FLANK_COAST",
-        "FLANK_DRIVE",
+        "FLANK_LOADED",
         "FRONT",
         "ROOT_ROOT",
         "SIDE_1",
@@ -134,15 +134,15 @@ fn sides_that_differ_have_rows_of_their_own() {
         "TIP",
     ];
     let angles = [("35 deg", "12 deg"), ("12 deg", "35 deg"), ("25 deg", "10 deg"), ("20 deg", "20 deg")];
-    for (order, (drive, coast)) in ORDERS.into_iter().flat_map(|order| angles.map(|of| (order, of))) {
-        let set = [("drive_angle", drive), ("coast_angle", coast)];
+    for (order, (loaded, coast)) in ORDERS.into_iter().flat_map(|order| angles.map(|of| (order, of))) {
+        let set = [("loaded_angle", loaded), ("coast_angle", coast)];
         let (numbers, deck) = Asked { set: &set, order, ..Asked::new(SPEC, "asymmetric") }.only();
         // with the same rows on both sides the least was 0.03
-        assert!(numbers.least_scaled_jacobian > 0.4, "{drive} {coast}: {numbers}");
+        assert!(numbers.least_scaled_jacobian > 0.4, "{loaded} {coast}: {numbers}");
         let across = &numbers.elements.across;
         let sides = [&across[..2], &across[3..]].map(|side| side.iter().sum::<usize>());
         assert_eq!((sides[0], across[2] % 2), (sides[1], 0), "{across:?}");
-        if drive == coast {
+        if loaded == coast {
             assert_eq!((across[0], across[1]), (across[4], across[3]), "{across:?}");
         }
         is_conforming(&deck, &names);

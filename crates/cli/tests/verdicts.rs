@@ -83,7 +83,10 @@ fn a_piece_that_leaves_nothing_beside_one_that_does_has_its_body_on_the_right_si
     }";
     let (told, surface) = solved(&folder, &format!("{library}{job}"), 1);
     assert_eq!(surface["outcomes"]["undercut"], 35, "{surface}\n{told}");
-    assert!(told.contains("though the same `body` leaves other pieces of it") && !told.contains("wrong side"), "{told}");
+    assert!(
+        told.contains("though the same `body` leaves other pieces of it") && !told.contains("wrong side"),
+        "{told}"
+    );
 }
 
 /// Boxes about the middle of two ranges that the search divides there hold no root.

@@ -155,7 +155,8 @@ fn where_no_ball_fits_that_is_said() {
     let (body, _) = Asked::new("specs/bodies/pin_ring_body.chain", "pin_ring_body", &set).only();
     assert!(body.gauges.balls.is_none() && body.gauges.no_ball_fits, "{body}");
     assert!(body.to_string().contains("balls    none touches both flanks within their ends"), "{body}");
-    let (other, _) = Asked { ball: Some(5.25), ..Asked::new("specs/bodies/spur_gear_body.chain", "spur_gear_body", &[]) }.only();
+    let (other, _) =
+        Asked { ball: Some(5.25), ..Asked::new("specs/bodies/spur_gear_body.chain", "spur_gear_body", &[]) }.only();
     assert!(!other.gauges.no_ball_fits && other.gauges.balls.is_some(), "{other}");
 }
 

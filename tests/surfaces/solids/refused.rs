@@ -43,11 +43,18 @@ fn what_bounds_no_body_is_told_with_its_number() {
 fn an_outline_beside_the_teeth_is_told_as_one() {
     for bore in ["40 mm", "45 mm"] {
         let told = Asked::new(BODIES, "helical", &[("helix_angle", "0 deg"), ("bore", bore)]).not_done();
-        let outline = format!("it has its material 39.6000 .. {:.4} mm from the axis", bore[..2].parse::<f64>().expect("mm"));
-        assert!(told.message.contains(&outline) && told.message.contains("no sampled point of `left` and `right`"), "{told}");
+        let outline =
+            format!("it has its material 39.6000 .. {:.4} mm from the axis", bore[..2].parse::<f64>().expect("mm"));
+        assert!(
+            told.message.contains(&outline) && told.message.contains("no sampled point of `left` and `right`"),
+            "{told}"
+        );
         // 3 mm times 12 less 1.05
         let [way] = &told.details[..] else { panic!("{told}") };
-        assert!(way.contains("on the other side of the ground of the spaces, which is 32.8500 mm from the axis"), "{told}");
+        assert!(
+            way.contains("on the other side of the ground of the spaces, which is 32.8500 mm from the axis"),
+            "{told}"
+        );
     }
 }
 
@@ -86,7 +93,10 @@ fn a_ground_in_one_row_is_told_with_what_to_sample() {
     let folder = tempfile::tempdir().expect("a folder");
     let result = worm.built(folder.path());
     let told = &result.not_done()[0];
-    assert!(told.message.contains("the sampled points of `worm_ground` lie in one row along the spaces of `worm`"), "{told}");
+    assert!(
+        told.message.contains("the sampled points of `worm_ground` lie in one row along the spaces of `worm`"),
+        "{told}"
+    );
     assert!(told.details[0].starts_with("in `sample worm_ground` three values or more"), "{told}");
 }
 

@@ -375,7 +375,8 @@ impl<'g> Builder<'_, 'g> {
         }
         let surface = &self.surfaces[index].0;
         let sample = sample::build(context, (path, written), surface, &self.scope);
-        let sample = sample.filter(|sample| check_independence(context, surface, sample, (path.span, &self.all_parameters())));
+        let sample =
+            sample.filter(|sample| check_independence(context, surface, sample, (path.span, &self.all_parameters())));
         match (&of.name, sample) {
             (Some(name), Some(sample)) => self.named_samples.push((name.clone(), index, sample)),
             (None, sample) => self.surfaces[index].0.sample = sample,
@@ -419,7 +420,8 @@ impl<'g> Builder<'_, 'g> {
                 return context.report(Diagnostic::new(Code::SampleShape, place, message));
             }
             let sample = sample.within(context.graph, axis, (run.low, run.high));
-            let sample = sample.filter(|sample| check_independence(context, surface, sample, (name.span, &self.all_parameters())));
+            let sample = sample
+                .filter(|sample| check_independence(context, surface, sample, (name.span, &self.all_parameters())));
             match (&of.name, sample) {
                 (_, None) => {}
                 (None, sample) => self.surfaces[at].0.sample = sample,

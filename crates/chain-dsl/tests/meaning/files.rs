@@ -535,7 +535,10 @@ fn a_count_of_zero_is_told_where_it_is_written() {
     let found = compile_file(&graph, &spec, &set).diagnostics;
     let told: Vec<&str> = found.iter().map(|finding| finding.message.as_str()).collect();
     assert!(!told.is_empty() && found.iter().all(|finding| finding.code == Code::SampleShape), "{told:?}");
-    assert!(told.len() < 3 && told.iter().all(|message| message.starts_with("`teeth` is 0: nothing is left of")), "{told:?}");
+    assert!(
+        told.len() < 3 && told.iter().all(|message| message.starts_with("`teeth` is 0: nothing is left of")),
+        "{told:?}"
+    );
 }
 
 /// The same in the text: what stands before the comma is no value that could lack a unit.

@@ -123,11 +123,7 @@ fn are_alike(a: InvoluteHelicoid, b: InvoluteHelicoid) -> bool {
 }
 
 /// What a flank should be, and who says so: the job, if that is nearly what the flank is, else its middle.
-fn nominal(
-    job: &Job<'_>,
-    solved: &Solved<'_, '_>,
-    own: InvoluteHelicoid,
-) -> (InvoluteHelicoid, InvoluteSource) {
+fn nominal(job: &Job<'_>, solved: &Solved<'_, '_>, own: InvoluteHelicoid) -> (InvoluteHelicoid, InvoluteSource) {
     let told = told(job, solved.surface).and_then(|(told, source)| Some((matched(told, own)?, source)));
     told.unwrap_or((own, InvoluteSource::Flank))
 }

@@ -30,8 +30,7 @@ const MOST_BYTES: usize = 1 << 30;
 const LEAST_LAND: f64 = 1e-6;
 /// The scaled Jacobian below which bricks are good for nothing.
 const LEAST_SHAPE: f64 = 0.1;
-const STRAIGHT_BLANK: &str =
-    "a blank whose ends run straight from the tip to the bore: below the teeth, lines from every place of the spaces to the rest of the outline \
+const STRAIGHT_BLANK: &str = "a blank whose ends run straight from the tip to the bore: below the teeth, lines from every place of the spaces to the rest of the outline \
      must not cross it, as they do where a web is much narrower than the teeth";
 /// How far the volume of bricks may be off, as a share: stiffness goes by the third power of a width, and is 15 % off by then.
 const MOST_VOLUME: f64 = 0.05;

@@ -62,8 +62,7 @@ fn fitting(body: &Body, ball: Option<f64>) -> Option<BallGauge> {
         return body.ball(ball).ok();
     }
     let (circle, form) = (circles(body, BALL_CIRCLES), body.form());
-    let touches_flanks =
-        |of: &BallGauge| of.rho.iter().zip(form).all(|(rho, form)| (rho - form).abs() > TOUCHES_END);
+    let touches_flanks = |of: &BallGauge| of.rho.iter().zip(form).all(|(rho, form)| (rho - form).abs() > TOUCHES_END);
     let mut order: Vec<usize> = (0..BALL_CIRCLES).collect();
     order.sort_by_key(|k| k.abs_diff(BALL_CIRCLES / 2));
     let mut balls: Vec<f64> = order.into_iter().filter_map(|k| circle_ball(body, circle[k])).collect();
