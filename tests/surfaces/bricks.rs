@@ -149,19 +149,62 @@ fn sides_that_differ_have_rows_of_their_own() {
     }
 }
 
-/// A shaft beyond the teeth is what sections across these do not reach. Without it the same teeth have bricks.
+/// A shaft below the root and beyond the teeth on one side: conforming, each face on the segment that it lies on, and all of the volume. Mirrored
+/// or with a shaft on both sides it is the same.
 #[test]
-fn a_shaft_beyond_the_teeth_is_told_as_the_reason() {
+fn a_shaft_beyond_the_teeth_has_bricks_of_its_own() {
     const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
-    let (result, files) = Asked::new(SPEC, "shaft").meshed();
+    let names = [
+        "BACK",
+        "BORE",
+        "END",
+        "FILLET_COAST_FILLET",
+        "FILLET_LOADED_FILLET",
+        "FLANK_COAST",
+        "FLANK_LOADED",
+        "FRONT",
+        "NECK",
+        "ROOT_ROOT",
+        "SIDE_1",
+        "SIDE_2",
+        "TIP",
+    ];
+    // names of segments, and what of [z, rho] is the same all over each
+    let segments = [("NECK", 1, 22.0), ("END", 0, -22.0), ("BORE", 1, 15.0), ("BACK", 0, 10.0), ("FRONT", 0, -10.0)];
+    for order in ORDERS {
+        for teeth in [1, 3, 24] {
+            let asked = Asked { order, teeth: Some(teeth), elements: [4, 6, 4], ..Asked::new(SPEC, "shaft") };
+            let (numbers, deck) = asked.only();
+            let shaft = numbers.elements.shaft.expect("its own");
+            assert!(shaft.ends[0] > 2 && shaft.ends[1] == 0 && numbers.least_scaled_jacobian > 0.3, "{numbers}");
+            if teeth < 24 {
+                is_conforming(&deck, &names);
+            }
+            let exact = numbers.exact_volume_mm3.expect("alike");
+            assert!((numbers.volume_mm3 / exact - 1.0).abs() < 0.01, "{numbers}");
+            for (name, k, wanted) in segments {
+                for node in &deck.node_sets[name] {
+                    let [x, y, z] = deck.nodes[*node];
+                    let found = [z, x.hypot(y)][k];
+                    assert!((found - wanted).abs() < 1e-9, "{name}: {found}");
+                }
+            }
+        }
+    }
+}
+
+/// A shaft that ends in a point has no face for its bricks: that is told, with a number that a scaled Jacobian may have.
+#[test]
+fn a_shaft_that_has_no_bricks_is_told_as_the_reason() {
+    const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
+    let (result, files) = Asked::new(SPEC, "spindle").meshed();
     let [told] = result.not_done() else { panic!("{:?}", result.not_done()) };
     assert!(files.is_empty() && told.kind == NotDoneKind::NoBricks, "{told}");
-    assert!(told.message.contains("`neck` of the outline goes on beyond these, by up to 12.0000 mm"), "{told}");
+    assert!(told.message.contains("of the outline goes on beyond the teeth, by up to 12.0000 mm"), "{told}");
     assert!(told.details[0].contains("a blank that ends with its teeth"), "{told}");
     let printed = told.message.split("Jacobian is ").nth(1).and_then(|rest| rest.split(',').next());
     let printed: f64 = printed.and_then(|number| number.parse().ok()).expect("a number");
     assert!((-1.0..0.1).contains(&printed), "unit vectors have no larger determinant: {printed}");
-    assert!(Asked::new(SPEC, "asymmetric").meshed().0.is_complete());
 }
 
 #[test]

@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BrickBody, BrickSet, Header};
 use flank_expr::Graph;
-use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickQuality, BrickSide, OutlineSegment, SpacePart};
+use flank_solver::{
+    Body, BrickCounts, BrickFaces, BrickMesh, BrickOrder, BrickQuality, BrickSide, OutlineSegment, SpacePart,
+};
 
 use crate::project::choices::{BrickFormat, Choice, ElementOrder};
 use crate::project::failure::Failure;
@@ -115,11 +117,20 @@ fn one(
         ElementOrder::First => BrickOrder::First,
         ElementOrder::Second => BrickOrder::Second,
     };
-    let counts = body.brick_counts(request.elements.map(|count| count as usize));
-    let size = counts.size(body, order, teeth as usize);
-    check_size(&solid.name, size, order)?;
-    let mesh = body.bricks(&counts, order, teeth as usize);
-    let quality = mesh.quality();
+    let elements = request.elements.map(|count| count as usize);
+    let cut = |counts: BrickCounts| -> Result<(BrickCounts, BrickMesh, BrickQuality), Failure> {
+        check_size(&solid.name, counts.size(body, order, teeth as usize), order)?;
+        let mesh = body.bricks(&counts, order, teeth as usize);
+        let quality = mesh.quality();
+        Ok((counts, mesh, quality))
+    };
+    let (mut counts, mut mesh, mut quality) = cut(body.brick_counts(elements))?;
+    // sections across the teeth do not reach what goes on beyond them
+    if folded(quality).is_some()
+        && let Some(with_shaft) = body.brick_counts_with_shaft(elements)
+    {
+        (counts, mesh, quality) = cut(with_shaft)?;
+    }
     if let Some(why) = folded(quality) {
         let message = format!("the bricks of `{}` would be folded or nearly so: {why}", solid.name);
         let straight = (order == BrickOrder::Second)
@@ -134,7 +145,8 @@ fn one(
         let (message, ways) = match beyond_teeth(body) {
             Some((segment, by)) => (
                 format!(
-                    "{message}. They lie between sections across the teeth, and `{segment}` of the outline goes on beyond these, by up to {}",
+                    "{message}. `{segment}` of the outline goes on beyond the teeth, by up to {}, and bricks follow it only as a shaft with a face \
+                     at its end",
                     length(by)
                 ),
                 [

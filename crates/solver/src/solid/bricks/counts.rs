@@ -3,6 +3,7 @@
 use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
 use crate::solid::bricks::layout;
+use crate::solid::bricks::shaft::{Shaft, ShaftCounts};
 
 /// Samples of a line across a chart by which its length is measured.
 const SAMPLES: usize = 1024;
@@ -34,6 +35,8 @@ pub struct BrickCounts {
     pub rim: usize,
     /// Along the tooth.
     pub along: usize,
+    /// Of a shaft that goes on beyond the teeth, where sections across these end at it.
+    pub shaft: Option<ShaftCounts>,
 }
 
 impl Body {
@@ -42,7 +45,22 @@ impl Body {
     ///
     /// # Panics
     /// If there are none up a flank, or fewer than three from flank to flank.
-    pub fn brick_counts(&self, [profile, along, thickness]: [usize; 3]) -> BrickCounts {
+    pub fn brick_counts(&self, counts: [usize; 3]) -> BrickCounts {
+        self.counts_above(counts, None)
+    }
+
+    /// The same of a blank that goes on beyond its teeth below their root, which has bricks of its own; `None` of others, and where the corners of its
+    /// outline leave no room for these.
+    ///
+    /// # Panics
+    /// As that.
+    pub fn brick_counts_with_shaft(&self, counts: [usize; 3]) -> Option<BrickCounts> {
+        let shaft = Shaft::of_blank(self.blank())?;
+        let counts = self.counts_above(counts, Some(&shaft));
+        shaft.lattice(counts.shaft?, counts.along, 1).map(|_| counts)
+    }
+
+    fn counts_above(&self, [profile, along, thickness]: [usize; 3], shaft: Option<&Shaft<'_>>) -> BrickCounts {
         assert!(profile > 0 && thickness > 2, "a brick up the flank, and three from flank to flank");
         let last = self.charts().len() - 1;
         let finer = profile as f64 / USUAL;
@@ -58,19 +76,22 @@ impl Body {
         if last.is_multiple_of(2) {
             charts[last / 2] = charts[last / 2].next_multiple_of(2);
         }
-        let charts = self.parting_alike(charts);
+        let middle = self.middle_below(shaft);
+        let charts = self.parting_alike(charts, middle);
         let band = ((thickness as f64 / 3.0).round() as usize).max(1);
-        let along = along.max(self.blank().rest().len()).max(1);
+        let least = if shaft.is_some() { 1 } else { self.blank().rest().len() };
+        let along = along.max(least).max(1);
         let growth = GROWTH.powf(1.0 / finer);
-        let layers = (1.0 + self.depth_below() * (growth - 1.0) / size).ln() / growth.ln();
+        let layers = (1.0 + self.depth_below(middle) * (growth - 1.0) / size).ln() / growth.ln();
         let rim = (layers.round() as usize).clamp(2, MOST_BELOW);
-        BrickCounts { charts, band, core: thickness - 2 * band, rim, along }
+        let shaft = shaft.map(|shaft| shaft.counts(along));
+        BrickCounts { charts, band, core: thickness - 2 * band, rim, along, shaft }
     }
 
     /// Counts of charts that are the same on both sides, or with more on each where flanks lean so differently that the core of a tooth would end far
     /// from where the one fillet or the other has turned for it: as many rows above that place on either side, and as many below.
-    fn parting_alike(&self, charts: Vec<usize>) -> Vec<usize> {
-        let depths = layout::depths(self, &charts);
+    fn parting_alike(&self, charts: Vec<usize>, middle: [f64; 2]) -> Vec<usize> {
+        let depths = layout::depths(self, &charts, middle);
         if depths[0].abs_diff(depths[1]) < APART {
             return charts;
         }
@@ -118,22 +139,26 @@ impl Body {
         (0..self.distinct()).map(of_tooth).fold(f64::INFINITY, f64::min)
     }
 
-    /// From the middle of the root to the rest of the outline, half-way along, mm.
-    fn depth_below(&self) -> f64 {
+    /// From the middle of the root to a place below, half-way along, mm.
+    fn depth_below(&self, [below_z, below_rho]: [f64; 2]) -> f64 {
         let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &[0.5])[0];
         let [z, rho, _] = line[line.len() / 2];
-        let [below_z, below_rho] = self.middle_below();
         (z - below_z).hypot(rho - below_rho)
     }
 
-    /// A place `[z, rho]` about the middle of the rest of the outline, whatever the tooth is cut into.
-    pub(crate) fn middle_below(&self) -> [f64; 2] {
+    /// A place `[z, rho]` about the middle of the rest of the outline, or of the line above a shaft, whatever the tooth is cut into.
+    pub(crate) fn middle_below(&self, shaft: Option<&Shaft<'_>>) -> [f64; 2] {
         let segments = self.blank().rest().len();
-        self.blank().below(2 * segments)[segments]
+        shaft.map_or_else(|| self.blank().below(2 * segments)[segments], Shaft::middle)
     }
 }
 
 impl BrickCounts {
+    /// What is below the teeth of a body that these are of.
+    pub(crate) fn shaft_of<'b>(&self, body: &'b Body) -> Option<Shaft<'b>> {
+        self.shaft.and_then(|_| Shaft::of_blank(body.blank()))
+    }
+
     /// How thick the band is beside a tooth, of half the tooth.
     pub(crate) fn band_share(&self) -> f64 {
         let growth = self.band_growth();
