@@ -68,7 +68,7 @@ fn a_branch_that_is_cut_away_whole_is_told_to_be_so() {
 #[test]
 fn a_piece_that_leaves_nothing_beside_one_that_does_has_its_body_on_the_right_side() {
     let folder = folder("protuberance");
-    let library = self_contained(&["tools/rack_protuberance", "machines/rack_generating"]);
+    let library = self_contained(&["tools/rack_protuberance", "machines/hobbing_6axis", "machines/rack_generating"]);
     let job = "job stock {
         machine m = rack_generating(reference_radius: 36 mm, shift: 0.6 mm)
         tool r = rack_protuberance(module: 3 mm)

@@ -7,9 +7,11 @@ use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units::{self, length};
 use crate::solve::blank;
-use crate::solve::body::piece::SAME_LINE;
 use crate::solve::body::smooth::BeyondEnds;
 use crate::solve::reasons;
+
+/// A solved point is on an outline that is no farther away, mm: rounding.
+const ON: f64 = 1e-6;
 
 /// That a solid has no body, with ways out.
 pub(crate) fn refused(solid: &Solid, message: String, ways: &[&str]) -> Failure {
@@ -196,8 +198,7 @@ pub(crate) fn faulty(solid: &Solid, (blank, names, has_edge): (&Blank, &[&str], 
 pub(crate) fn elsewhere(solid: &Solid, blank: &Blank, surfaces: &[(&str, Vec<[f64; 2]>)]) -> Option<Failure> {
     let [first, .., last] = surfaces else { return None };
     // flanks may be sampled up to the tip itself
-    let is_inside =
-        |place: &[f64; 2]| blank.outline.holds(*place) && blank.outline.segments_at(*place, SAME_LINE).is_empty();
+    let is_inside = |place: &[f64; 2]| blank.outline.holds(*place) && blank.outline.segments_at(*place, ON).is_empty();
     if [first, last].into_iter().flat_map(|(_, places)| places).any(is_inside) {
         return None;
     }

@@ -71,13 +71,14 @@ impl Body {
             let (length, turn) = measured[k];
             (length / size).max(turn / TURN * finer).ceil().max(1.0) as usize
         };
-        let mut charts: Vec<usize> = (0..=last).map(|k| wanted(k).max(wanted(last - k))).collect();
+        let own: Vec<usize> = (0..=last).map(wanted).collect();
+        let mut charts: Vec<usize> = (0..=last).map(|k| own[k].max(own[last - k])).collect();
         flanks.into_iter().for_each(|k| (charts[k], charts[last - k]) = (profile, profile));
         if last.is_multiple_of(2) {
             charts[last / 2] = charts[last / 2].next_multiple_of(2);
         }
         let middle = self.middle_below(shaft);
-        let charts = self.parting_alike(charts, middle);
+        let charts = self.parting_alike(charts, &own, middle);
         let band = ((thickness as f64 / 3.0).round() as usize).max(1);
         let least = if shaft.is_some() { 1 } else { self.blank().rest().len() };
         let along = along.max(least).max(1);
@@ -90,7 +91,7 @@ impl Body {
 
     /// Counts of charts that are the same on both sides, or with more on each where flanks lean so differently that the core of a tooth would end far
     /// from where the one fillet or the other has turned for it: as many rows above that place on either side, and as many below.
-    fn parting_alike(&self, charts: Vec<usize>, middle: [f64; 2]) -> Vec<usize> {
+    fn parting_alike(&self, charts: Vec<usize>, own: &[usize], middle: [f64; 2]) -> Vec<usize> {
         let depths = layout::depths(self, &charts, middle);
         if depths[0].abs_diff(depths[1]) < APART {
             return charts;
@@ -111,16 +112,20 @@ impl Body {
         if parting != other || 2 * parting >= last || parting <= flanks[0] || last - parting >= flanks[1] {
             return charts;
         }
-        let above = [first, second];
-        let below = [0, 1].map(|side| charts[at(side, parting)] - above[side]);
-        let most_below = below[0].max(below[1]).max(1);
+        // of the chart in which that place lies the share below it; as many rows there as either side wants
+        let share = |side: usize, above: usize| 1.0 - above as f64 / charts[at(side, parting)] as f64;
+        let below = [share(0, first), share(1, second)];
+        let wanted = |side: usize| below[side] * own[at(side, parting)] as f64;
+        let rows_below = wanted(0).max(wanted(1)).ceil().max(1.0);
+        if below.contains(&0.0) {
+            return charts;
+        }
         let mut charts = charts;
         let mut rows = [0; 2];
         for side in [0, 1] {
-            let finer = most_below as f64 / below[side].max(1) as f64;
-            let own = (above[side] as f64 * finer).round() as usize;
-            charts[at(side, parting)] = own + most_below;
-            rows[side] = own + (0..parting).map(|k| charts[at(side, k)]).sum::<usize>();
+            let above = (rows_below / below[side] - rows_below).round() as usize;
+            charts[at(side, parting)] = above + rows_below as usize;
+            rows[side] = above + (0..parting).map(|k| charts[at(side, k)]).sum::<usize>();
         }
         let most = rows[0].max(rows[1]);
         (0..2).for_each(|side| charts[flanks[side]] += most - rows[side]);
