@@ -132,30 +132,15 @@ fn one(
         (counts, mesh, quality) = cut(with_shaft)?;
     }
     if let Some(why) = folded(quality) {
-        let message = format!("the bricks of `{}` would be folded or nearly so: {why}", solid.name);
-        let straight = (order == BrickOrder::Second)
-            .then(|| body.bricks(&counts, BrickOrder::First, teeth as usize).quality())
-            .filter(|quality| folded(*quality).is_none())
-            .map(|quality| {
-                format!(
-                    "bricks of the first order, with option `order`: their least scaled Jacobian is {:.3} with the same numbers",
-                    quality.least_scaled_jacobian
-                )
-            });
-        let (message, ways) = match beyond_teeth(body) {
-            Some((segment, by)) => (
-                format!(
-                    "{message}. `{segment}` of the outline goes on beyond the teeth, by up to {}, and bricks follow it only as a shaft with a face \
-                     at its end",
-                    length(by)
-                ),
-                [
-                    "in a job that extends this one a blank that ends with its teeth: both ends straight from the tip to the bore",
-                    "or the whole body for a mesher that fills any: `flank solve` with option `step`",
-                ],
-            ),
-            None => (message, ["other numbers with option `elements`", STRAIGHT_BLANK]),
-        };
+        let straight = || body.bricks(&counts, BrickOrder::First, teeth as usize).quality();
+        let straight = (order == BrickOrder::Second).then(straight).filter(|quality| folded(*quality).is_none());
+        let (message, ways) = of_folded(solid, why, beyond_teeth(body).filter(|_| counts.shaft.is_none()));
+        let straight = straight.map(|quality| {
+            format!(
+                "bricks of the first order, with option `order`: their least scaled Jacobian is {:.3} with the same numbers",
+                quality.least_scaled_jacobian
+            )
+        });
         return refused(message, &straight.as_deref().into_iter().chain(ways).collect::<Vec<&str>>());
     }
     let off = exact_volume(body, teeth).map_or(0.0, |exact| quality.volume / exact - 1.0);
@@ -200,6 +185,25 @@ fn beyond_teeth(body: &Body) -> Option<(String, f64)> {
     };
     let rest = blank.rest().into_iter().map(|segment| (segment.name.clone(), beyond(segment)));
     rest.filter(|(_, by)| *by > LEAST_LAND).reduce(|most, other| if other.1 > most.1 { other } else { most })
+}
+
+/// What bricks that are folded are told as, and ways out; with what of the outline goes on beyond the teeth and has no bricks of its own.
+fn of_folded(solid: &Solid, why: String, beyond: Option<(String, f64)>) -> (String, [&'static str; 2]) {
+    let message = format!("the bricks of `{}` would be folded or nearly so: {why}", solid.name);
+    match beyond {
+        Some((segment, by)) => (
+            format!(
+                "{message}. `{segment}` of the outline goes on beyond the teeth, by up to {}, and bricks follow it only as a shaft with a face at \
+                 its end",
+                length(by)
+            ),
+            [
+                "in a job that extends this one a blank that ends with its teeth: both ends straight from the tip to the bore",
+                "or the whole body for a mesher that fills any: `flank solve` with option `step`",
+            ],
+        ),
+        None => (message, ["other numbers with option `elements`", STRAIGHT_BLANK]),
+    }
 }
 
 /// Why bricks are good for nothing.
