@@ -276,7 +276,7 @@ fn faces_of(
     let [first, last] = if is_forward { [0, 1] } else { [1, 0] };
     let mut brick = 0;
     for tooth in 0..teeth {
-        for a in 0..counts.layers() {
+        for (a, below) in below.iter().enumerate() {
             for cell in layout.cells.iter().filter(|cell| counts.has(a, cell)) {
                 let mut add = |side, face| found.entry((side, tooth)).or_default().push((brick, face));
                 // where teeth end, or a shaft
@@ -299,7 +299,7 @@ fn faces_of(
                         CellSide::Inner => continue,
                         CellSide::Chart(chart) => BrickSide::Chart(*chart),
                         CellSide::Tip => BrickSide::Outline(ends[1]),
-                        CellSide::Below => BrickSide::Outline(below[a]),
+                        CellSide::Below => BrickSide::Outline(*below),
                         CellSide::Above => match shaft.and_then(|shaft| shaft.above(a, counts.along)) {
                             Some(segment) => BrickSide::Outline(segment),
                             None => continue,

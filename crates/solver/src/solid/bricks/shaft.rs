@@ -244,7 +244,7 @@ impl Chain<'_> {
 }
 
 /// The same from its end to its beginning.
-fn turned<'b>(parts: Vec<(usize, &'b OutlineSegment, [f64; 2])>) -> Vec<(usize, &'b OutlineSegment, [f64; 2])> {
+fn turned(parts: Vec<(usize, &OutlineSegment, [f64; 2])>) -> Vec<(usize, &OutlineSegment, [f64; 2])> {
     parts.into_iter().rev().map(|(number, segment, [from, to])| (number, segment, [to, from])).collect()
 }
 
