@@ -116,6 +116,106 @@ fn is_conforming(deck: &Deck, names: &[&str]) {
     assert_eq!(places.len(), deck.nodes.len(), "no two nodes in one place");
 }
 
+/// Flanks of 12 and 35 degrees: their fillets turn into the root at other places, and each side has its own rows above and below.
+#[test]
+fn sides_that_differ_have_rows_of_their_own() {
+    const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
+    let names = [
+        "BACK",
+        "BORE",
+        "FILLET_COAST_FILLET",
+        "FILLET_LOADED_FILLET",
+        "FLANK_COAST",
+        "FLANK_LOADED",
+        "FRONT",
+        "ROOT_ROOT",
+        "SIDE_1",
+        "SIDE_2",
+        "TIP",
+    ];
+    let first = [("35 deg", "12 deg"), ("12 deg", "35 deg"), ("25 deg", "10 deg"), ("20 deg", "20 deg")];
+    // of the second order where the root is no shorter than its bricks are thick
+    let second = [("25 deg", "15 deg"), ("20 deg", "20 deg")];
+    let of_order =
+        |order, angles: &[(&'static str, &'static str)]| angles.iter().map(move |of| (order, *of)).collect::<Vec<_>>();
+    let [first, second] = [of_order(ORDERS[0], &first), of_order(ORDERS[1], &second)];
+    for (order, (loaded, coast)) in first.into_iter().chain(second) {
+        let set = [("loaded_angle", loaded), ("coast_angle", coast)];
+        let (numbers, deck) = Asked { set: &set, order, ..Asked::new(SPEC, "asymmetric") }.only();
+        // with the same rows on both sides the least was 0.03
+        assert!(numbers.least_scaled_jacobian > 0.3, "{loaded} {coast}: {numbers}");
+        let across = &numbers.elements.across;
+        let sides = [&across[..2], &across[3..]].map(|side| side.iter().sum::<usize>());
+        assert_eq!((sides[0], across[2] % 2), (sides[1], 0), "{across:?}");
+        if loaded == coast {
+            assert_eq!((across[0], across[1]), (across[4], across[3]), "{across:?}");
+        }
+        is_conforming(&deck, &names);
+    }
+}
+
+/// A shaft below the root and beyond the teeth on one side: conforming, each face on the segment that it lies on, and all of the volume. Mirrored
+/// or with a shaft on both sides it is the same.
+#[test]
+fn a_shaft_beyond_the_teeth_has_bricks_of_its_own() {
+    const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
+    let names = [
+        "BACK",
+        "BORE",
+        "END",
+        "FILLET_COAST_FILLET",
+        "FILLET_LOADED_FILLET",
+        "FLANK_COAST",
+        "FLANK_LOADED",
+        "FRONT",
+        "NECK",
+        "ROOT_ROOT",
+        "SIDE_1",
+        "SIDE_2",
+        "TIP",
+    ];
+    // names of segments, and what of [z, rho] is the same all over each
+    let segments = [("NECK", 1, 22.0), ("END", 0, -22.0), ("BORE", 1, 15.0), ("BACK", 0, 10.0), ("FRONT", 0, -10.0)];
+    for order in ORDERS {
+        for teeth in [1, 3, 24] {
+            let set = [("loaded_angle", "20 deg"), ("coast_angle", "20 deg")];
+            let asked =
+                Asked { set: &set, order, teeth: Some(teeth), elements: [4, 6, 4], ..Asked::new(SPEC, "shaft") };
+            let (numbers, deck) = asked.only();
+            let shaft = numbers.elements.shaft.expect("its own");
+            let [first, second] = shaft.ends;
+            assert!(first.min(second) == 0 && first.max(second) > 2, "{numbers}");
+            assert!(numbers.least_scaled_jacobian > 0.3, "{numbers}");
+            if teeth == 1 {
+                is_conforming(&deck, &names);
+            }
+            let exact = numbers.exact_volume_mm3.expect("alike");
+            assert!((numbers.volume_mm3 / exact - 1.0).abs() < 0.001, "{numbers}");
+            for (name, k, wanted) in segments {
+                for node in &deck.node_sets[name] {
+                    let [x, y, z] = deck.nodes[*node];
+                    let found = [z, x.hypot(y)][k];
+                    assert!((found - wanted).abs() < 1e-9, "{name}: {found}");
+                }
+            }
+        }
+    }
+}
+
+/// A shaft that ends in a point has no face for its bricks: that is told, with a number that a scaled Jacobian may have.
+#[test]
+fn a_shaft_that_has_no_bricks_is_told_as_the_reason() {
+    const SPEC: &str = "tests/surfaces/specs/asymmetric.chain";
+    let (result, files) = Asked::new(SPEC, "spindle").meshed();
+    let [told] = result.not_done() else { panic!("{:?}", result.not_done()) };
+    assert!(files.is_empty() && told.kind == NotDoneKind::NoBricks, "{told}");
+    assert!(told.message.contains("of the outline goes on beyond the teeth, by up to 12.0000 mm"), "{told}");
+    assert!(told.details[0].contains("a blank that ends with its teeth"), "{told}");
+    let printed = told.message.split("Jacobian is ").nth(1).and_then(|rest| rest.split(',').next());
+    let printed: f64 = printed.and_then(|number| number.parse().ok()).expect("a number");
+    assert!((-1.0..0.1).contains(&printed), "unit vectors have no larger determinant: {printed}");
+}
+
 #[test]
 fn bricks_share_their_faces_and_sides_match() {
     let single = [

@@ -340,6 +340,9 @@ pub struct Parameter<'g> {
     pub definition: Expr<'g>,
     /// Its value, mm or radians.
     pub value: f64,
+    /// The value that the text gives it, with those of the others as they are: the same, unless the caller gives it another one. NaN where the
+    /// text gives it none.
+    pub value_in_text: f64,
     /// Whether it counts something: then it is a whole number and has no derivative.
     pub is_count: bool,
     /// Whether it says how a machine differs from the nominal one, in which it is zero.

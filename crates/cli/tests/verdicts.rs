@@ -64,6 +64,31 @@ fn a_branch_that_is_cut_away_whole_is_told_to_be_so() {
     }
 }
 
+/// A protuberance that cuts in the free leaves nothing; its `body` is that of the flank, which is there.
+#[test]
+fn a_piece_that_leaves_nothing_beside_one_that_does_has_its_body_on_the_right_side() {
+    let folder = folder("protuberance");
+    let library = self_contained(&["tools/rack_protuberance", "machines/hobbing_6axis", "machines/rack_generating"]);
+    let job = "job stock {
+        machine m = rack_generating(reference_radius: 36 mm, shift: 0.6 mm)
+        tool r = rack_protuberance(module: 3 mm)
+        mount r on m.head
+        motion phi : angle in -60 deg .. 60 deg
+        drive m.C = phi
+        surface plus in m.table = envelope(r.plus, over: phi)
+        sample plus.flank { rho: 36 mm .. 39.6 mm by 7, z: -10 mm .. 10 mm by 5 }
+        sample plus.protuberance {
+            s: r.tooth.protuberance.from .. r.tooth.protuberance.to by 7, z: -10 mm .. 10 mm by 5
+        }
+    }";
+    let (told, surface) = solved(&folder, &format!("{library}{job}"), 1);
+    assert_eq!(surface["outcomes"]["undercut"], 35, "{surface}\n{told}");
+    assert!(
+        told.contains("though the same `body` leaves other pieces of it") && !told.contains("wrong side"),
+        "{told}"
+    );
+}
+
 /// Boxes about the middle of two ranges that the search divides there hold no root.
 #[test]
 fn what_holds_no_root_is_excluded() {

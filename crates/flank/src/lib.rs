@@ -147,7 +147,7 @@ pub use report::result::{
 };
 pub use solve::arrays::{FieldArray, PointGrid};
 pub use solve::body::bricks::mesh;
-pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers};
+pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers, ShaftElements};
 pub use solve::body::mounted::{MountedSolid, Mounting};
 pub use solve::body::result::{
     BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers,

@@ -45,7 +45,8 @@ fn a_generated_spur_gear_has_no_deviations() {
     let found = traces("hobbing/spur_gear.chain", &[]);
     assert_eq!(found.iter().map(|of| &*of.surface).collect::<Vec<_>>(), ["flank_plus", "flank_minus"]);
     for of in &found {
-        assert_eq!(of.involute.source, InvoluteSource::Job);
+        // the rack has the pressure angle, the job has none
+        assert_eq!(of.involute.source, InvoluteSource::Tool);
         assert!((of.involute.base_diameter_mm - 72.0 * 20f64.to_radians().cos()).abs() < 1e-12, "{:?}", of.involute);
         for trace in [&of.profile, &of.helix] {
             assert_eq!(trace.lengths_mm.len(), trace.asked);
@@ -108,6 +109,47 @@ fn a_wrong_pressure_angle_is_a_profile_slope() {
         }
         assert!(of.profile.slope_um < -10.0, "more pressure angle, less material at the tip: {}", of.profile.slope_um);
         assert!(evaluated(&of.helix).iter().all(|um| um.abs() < 1e-4), "{:?}", evaluated(&of.helix));
+    }
+}
+
+/// What is set of the tool from outside makes another flank, not another gear: a job without a pressure angle of its own is held against that
+/// which its text gives the tool. An involute of a base circle with another radius rises over it by the length of roll times the share of
+/// the change, but for terms of its square.
+#[test]
+fn a_tool_that_is_set_otherwise_is_held_against_the_text() {
+    let design = 36.0 * 20f64.to_radians().cos();
+    for degrees in [20.2_f64, 19.9] {
+        let found = traces("hobbing/spur_gear.chain", &[("r.pressure_angle", &format!("{degrees} deg"))]);
+        let made = 36.0 * degrees.to_radians().cos();
+        assert_eq!(found.len(), 2);
+        for of in &found {
+            assert_eq!(of.involute.source, InvoluteSource::Tool);
+            assert!((of.involute.base_diameter_mm - 2.0 * design).abs() < 1e-12, "{:?}", of.involute);
+            let lengths = &of.profile.lengths_mm;
+            let middle = lengths[lengths.len() / 2];
+            let apart = |length: f64| {
+                let rho = design.hypot(length);
+                involute(made, rho) - involute(design, rho)
+            };
+            for (length, found) in lengths.iter().zip(&of.profile.deviations_um) {
+                let wanted = -1e3 * design * (apart(*length) - apart(middle));
+                assert!((found - wanted).abs() < 1e-4, "{length}: {found} {wanted}");
+            }
+            let share = made / design - 1.0;
+            let rise = 1e3 * share * (lengths[lengths.len() - 1] - lengths[0]);
+            assert!((of.profile.slope_um / rise - 1.0).abs() < 20.0 * share.abs(), "{} {rise}", of.profile.slope_um);
+            assert!(of.profile.form_um < 0.05 * rise.abs(), "{}", of.profile.form_um);
+        }
+    }
+}
+
+/// A job that names other gear data than its flank has is held against that flank, and says so.
+#[test]
+fn gear_data_of_another_flank_are_not_taken() {
+    let found = traces("hobbing/crowned_gear.chain", &[("h.normal_pressure_angle", "30 deg"), ("crowning", "0 mm")]);
+    for of in &found {
+        assert_eq!(of.involute.source, InvoluteSource::Flank);
+        assert!(of.profile.slope_um.abs() < 1e-4, "its own slope is none: {}", of.profile.slope_um);
     }
 }
 

@@ -83,6 +83,7 @@ pub use solid::blank::Blank;
 pub use solid::body::{Body, BodyFault};
 pub use solid::bricks::counts::BrickCounts;
 pub use solid::bricks::quality::BrickQuality;
+pub use solid::bricks::shaft::ShaftCounts;
 pub use solid::bricks::{BrickFaces, BrickMesh, BrickOrder, BrickSide};
 pub use solid::chart::Chart;
 pub use solid::closed::ClosedMesh;

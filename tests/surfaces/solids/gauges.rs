@@ -118,6 +118,64 @@ fn gauges_touch_the_flank_however_deep_the_fillet_is() {
     }
 }
 
+/// The ball that is taken where none is asked for touches about where the middle of the flanks is, and an anvil reaches it: of a small gear as of a
+/// large one, also where flanks lean so much that a ball as wide as the space would lie below the tip.
+#[test]
+fn balls_touch_about_the_middle_of_the_flanks_and_stand_out() {
+    let spur: [&[(&str, &str)]; 5] = [
+        &[("teeth", "24")],
+        &[("teeth", "120"), ("r.pressure_angle", "25 deg"), ("r.tip_radius", "0.6 mm")],
+        &[("teeth", "200"), ("profile_shift", "-1.2")],
+        &[("module", "0.05 mm"), ("face_width", "1 mm")],
+        &[("teeth", "12"), ("profile_shift", "0.6")],
+    ];
+    for set in spur {
+        let (body, _) = Asked::new("specs/bodies/spur_gear_body.chain", "spur_gear_body", set).only();
+        let (gauges, tip) = (&body.gauges, body.gauges.tip_diameter_mm.expect("round"));
+        let balls = gauges.balls.as_ref().expect("one fits");
+        let form = gauges.form_diameters_mm.expect("round")[0];
+        let share = (balls.diameters_mm[0] - form) / (tip - form);
+        assert!((share - 0.5).abs() < 0.1 && balls.over_balls_mm > tip, "{set:?}: {share} {balls:?} {tip}");
+        // in steps of a quarter of a millimetre, or of a hundredth
+        let steps = balls.ball_mm * if balls.ball_mm > 1.0 { 4.0 } else { 100.0 };
+        assert!((steps - steps.round()).abs() < 1e-9, "{balls:?}");
+    }
+    let ring = Asked::new("specs/bodies/internal_pair_body.chain", "internal_pair_body", &[]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let solids = ring.built(folder.path()).solids;
+    let gauges = &solids.iter().find(|of| of.name == "ring").expect("it has one").gauges;
+    let balls = gauges.balls.as_ref().expect("one fits");
+    assert!(balls.over_balls_mm < gauges.tip_diameter_mm.expect("round"), "between them: {balls:?}");
+}
+
+/// Between three pins of a ring there is room for no ball that touches two of them: that is said.
+#[test]
+fn where_no_ball_fits_that_is_said() {
+    let set = [("pins", "3")];
+    let (body, _) = Asked::new("specs/bodies/pin_ring_body.chain", "pin_ring_body", &set).only();
+    assert!(body.gauges.balls.is_none() && body.gauges.no_ball_fits, "{body}");
+    assert!(body.to_string().contains("balls    none touches both flanks within their ends"), "{body}");
+    let (other, _) =
+        Asked { ball: Some(5.25), ..Asked::new("specs/bodies/spur_gear_body.chain", "spur_gear_body", &[]) }.only();
+    assert!(!other.gauges.no_ball_fits && other.gauges.balls.is_some(), "{other}");
+}
+
+/// Lobes that end in an edge have no thickness there, and none below nothing.
+#[test]
+fn an_edge_has_no_thickness() {
+    for (spec, job) in [("gerotor", "gerotor"), ("rounded_gerotor", "elliptic_gerotor")] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let spec = format!("specs/cycloidal/{spec}.chain");
+        let result = Asked::new(&spec, job, &[]).built(folder.path());
+        assert!(!result.solids.is_empty());
+        for body in &result.solids {
+            let last = body.gauges.thickness.last().expect("up to the tip");
+            assert!(last.arc_mm == 0.0 && last.arc_mm.is_sign_positive(), "{}", last.arc_mm);
+            assert!(!body.to_string().contains("-0.0000"), "{body}");
+        }
+    }
+}
+
 /// Balls between two pins of a ring, by the distance of their centres, which stay clear of the ground that the pins stand out of: the program's
 /// own choice does, and another one is refused with how deep it would lie.
 #[test]

@@ -36,9 +36,68 @@ fn what_bounds_no_body_is_told_with_its_number() {
     let message = &told.message;
     assert!(message.contains("`right_fillet` does not reach `tip`") && message.contains("`theta` by "), "{told}");
     assert!(told.details[0].starts_with("name in `of:` the surface between `right_fillet` and the tip"), "{told}");
-    // the bore lies 0.4 mm outside the tip
-    let told = Asked::new(BODIES, "helical", &[("helix_angle", "0 deg"), ("bore", "40 mm")]).refused();
-    assert!(told.contains("through `tip` of its outline, and leave it by `bore`"), "{told}");
+}
+
+/// A bore outside the tip: between both there is nothing that spaces could be cut into.
+#[test]
+fn an_outline_beside_the_teeth_is_told_as_one() {
+    for bore in ["40 mm", "45 mm"] {
+        let told = Asked::new(BODIES, "helical", &[("helix_angle", "0 deg"), ("bore", bore)]).not_done();
+        let outline =
+            format!("it has its material 39.6000 .. {:.4} mm from the axis", bore[..2].parse::<f64>().expect("mm"));
+        assert!(
+            told.message.contains(&outline) && told.message.contains("no sampled point of `left` and `right`"),
+            "{told}"
+        );
+        // 3 mm times 12 less 1.05
+        let [way] = &told.details[..] else { panic!("{told}") };
+        assert!(
+            way.contains("on the other side of the ground of the spaces, which is 32.8500 mm from the axis"),
+            "{told}"
+        );
+    }
+}
+
+/// A surface of whose branches none is chosen: each stands there with the `keep` that takes it, and the one that is meant makes the body.
+#[test]
+fn a_surface_with_several_branches_is_told_with_what_chooses_each() {
+    const SPEC: &str = "specs/bodies/crowned_gear_body.chain";
+    const KEEP: &str = "keep on_thread = spindle + tau: 0 deg .. 360 deg";
+    let with = |keep: &str, check: &dyn Fn(Asked<'_>)| {
+        check(Asked { changed: Some((KEEP, keep)), ..Asked::new(SPEC, "crowned_gear_body", &[]) });
+    };
+    with("", &|asked| {
+        let told = asked.not_done();
+        assert!(told.message.contains("`root` bounds the spaces of `gear` and is ambiguous"), "{told}");
+        assert_eq!(told.details.len(), 6, "five turns of the hob, and what to do: {told}");
+        assert!(told.details[..5].iter().all(|branch| branch.contains(": `keep spindle: ")), "{told}");
+        assert!(told.details[5].contains("Put its `keep` into `sample root`"), "{told}");
+        // on the thread that the text asks for
+        let branch = told.details.iter().find(|of| of.contains("spindle 237.2392 deg")).expect("one of them");
+        let keep = branch.split('`').nth(1).expect("a keep");
+        with(keep, &|asked| {
+            let (body, _) = asked.only();
+            assert!(body.gauges.root_diameter_mm.is_some_and(|root| (root - 104.3579).abs() < 1e-4), "{body}");
+        });
+    });
+}
+
+/// A ground that is sampled along one row of a thread tells no rows apart.
+#[test]
+fn a_ground_in_one_row_is_told_with_what_to_sample() {
+    const ROWS: &str = "105 deg / starts .. 255 deg / starts by 3";
+    let worm = Asked {
+        changed: Some((ROWS, "[180 deg]")),
+        ..Asked::new("specs/bodies/worm_and_wheel_body.chain", "worm_and_wheel_body", &[])
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let result = worm.built(folder.path());
+    let told = &result.not_done()[0];
+    assert!(
+        told.message.contains("the sampled points of `worm_ground` lie in one row along the spaces of `worm`"),
+        "{told}"
+    );
+    assert!(told.details[0].starts_with("in `sample worm_ground` three values or more"), "{told}");
 }
 
 /// Where the bore is too large by the space's whole depth, that is what is told, whatever is looked at first.

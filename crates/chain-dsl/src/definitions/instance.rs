@@ -183,12 +183,17 @@ impl<'a, 'g> Binder<'a, 'g> {
         }
         if let Some(Given { definition, written, by: given_by }) = given {
             let doc = param.doc.clone();
+            let value_in_text = match given_by {
+                ValueSource::Caller => self.in_text(context, param, scope).unwrap_or(f64::NAN),
+                ValueSource::Definition(_) | ValueSource::Job => value,
+            };
             self.parameters.push(Parameter {
                 name,
                 variable,
                 dimension,
                 definition,
                 value,
+                value_in_text,
                 is_count,
                 is_error: param.is_error,
                 range,
@@ -292,6 +297,21 @@ impl<'a, 'g> Binder<'a, 'g> {
                 Some((value, context.evaluate(value, job), ValueSource::Job))
             }
             _ => param.default.as_ref().map(|value| (value, context.evaluate(value, scope), self.source.by_default())),
+        }
+    }
+
+    /// What the text sets a parameter to that the caller gives another value.
+    fn in_text(&self, context: &mut Context<'g>, param: &Param, scope: &Scope<'g>) -> Option<f64> {
+        let value = match (self.settings.get(param.name.node.as_str()), &self.source) {
+            (Some(value), Source::Instance { job, .. }) => context.evaluate(value, job),
+            _ => context.evaluate(param.default.as_ref()?, scope),
+        };
+        match value {
+            Value::Scalar(value, _) => match context.constant_kept(value) {
+                Constant::Known(value) => Some(value),
+                _ => None,
+            },
+            _ => None,
         }
     }
 

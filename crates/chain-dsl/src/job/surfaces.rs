@@ -9,7 +9,7 @@ use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
 use crate::limits;
-use crate::model::{GeneratedSurface, Generation, Process, RangedVariable, ToolShape, path};
+use crate::model::{GeneratedSurface, Generation, Parameter, Process, RangedVariable, ToolShape, path};
 use crate::syntax::ast::{self, Expression, ExpressionKind};
 use crate::values::context::{Context, quoted};
 use crate::values::dimension::shown;
@@ -350,6 +350,15 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
+    /// Those of the job, its machines and its tools, each after those that its value depends on: these were made first.
+    fn all_parameters(&self) -> Vec<&Parameter<'g>> {
+        let of_machines = self.machines.iter().flat_map(|(_, _, built)| &built.parameters);
+        let of_tools = self.tools.iter().flat_map(|(_, _, built)| &built.parameters);
+        let mut all: Vec<&Parameter<'g>> = self.parameters.iter().chain(of_machines).chain(of_tools).collect();
+        all.sort_by_key(|parameter| parameter.variable.as_variable());
+        all
+    }
+
     fn sample_surface(&mut self, context: &mut Context<'g>, of: &ast::Sampled, written: &ast::Sample, job: &ast::Job) {
         let path = &of.surface;
         if let [name] = path.segments.as_slice()
@@ -366,7 +375,8 @@ impl<'g> Builder<'_, 'g> {
         }
         let surface = &self.surfaces[index].0;
         let sample = sample::build(context, (path, written), surface, &self.scope);
-        let sample = sample.filter(|sample| check_independence(context, surface, sample, path.span));
+        let sample =
+            sample.filter(|sample| check_independence(context, surface, sample, (path.span, &self.all_parameters())));
         match (&of.name, sample) {
             (Some(name), Some(sample)) => self.named_samples.push((name.clone(), index, sample)),
             (None, sample) => self.surfaces[index].0.sample = sample,
@@ -410,7 +420,8 @@ impl<'g> Builder<'_, 'g> {
                 return context.report(Diagnostic::new(Code::SampleShape, place, message));
             }
             let sample = sample.within(context.graph, axis, (run.low, run.high));
-            let sample = sample.filter(|sample| check_independence(context, surface, sample, name.span));
+            let sample = sample
+                .filter(|sample| check_independence(context, surface, sample, (name.span, &self.all_parameters())));
             match (&of.name, sample) {
                 (_, None) => {}
                 (None, sample) => self.surfaces[at].0.sample = sample,

@@ -526,6 +526,31 @@ fn a_decimal_comma_from_outside_is_one_finding() {
     assert_eq!(codes(&folder.join("jobs/j.chain"), &[("height", "2,5 mm")]), [Code::Syntax]);
 }
 
+/// Of a gear without teeth nothing can be asked for. That is told where the zero is written, once, and not of each surface.
+#[test]
+fn a_count_of_zero_is_told_where_it_is_written() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/tutorial/first_gear.chain");
+    let graph = Graph::new();
+    let set = [("teeth".to_string(), "0".to_string())];
+    let found = compile_file(&graph, &spec, &set).diagnostics;
+    let of_samples = found.iter().filter(|finding| finding.code == Code::SampleShape);
+    let told: Vec<&str> = of_samples.map(|finding| finding.message.as_str()).collect();
+    assert!(!told.is_empty(), "{found:?}");
+    assert!(
+        told.len() < 3 && told.iter().all(|message| message.starts_with("`teeth` is 0: nothing is left of")),
+        "{told:?}"
+    );
+}
+
+/// The same in the text: what stands before the comma is no value that could lack a unit.
+#[test]
+fn a_decimal_comma_in_the_text_is_one_finding() {
+    let job = JOB.replacen(" mm", ",5 mm", 1);
+    assert_ne!(job, JOB);
+    let folder = project("comma_in_text", &[("library.chain", LIBRARY), ("jobs/j.chain", &job)]);
+    assert_eq!(codes(&folder.join("jobs/j.chain"), &[]), [Code::Syntax]);
+}
+
 /// A grid of points: what is wrong of its rows, and of how it is asked for.
 #[test]
 fn large_tables_are_refused() {

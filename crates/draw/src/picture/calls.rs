@@ -12,8 +12,10 @@ const DISTANCES: [f64; 11] = [10.0, 16.0, 24.0, 36.0, 52.0, 72.0, 96.0, 130.0, 1
 const DIRECTIONS: u32 = 16;
 /// From here on a thin line leads to the place.
 const FAR: f64 = 30.0;
-/// A letter over another one is as bad as so many sheet units away from the place; so is a line through so much of a text.
+/// A letter over something is as bad as so many sheet units away from the place, over another letter as so many more; so is a line through so
+/// much of a text.
 const LETTER: f64 = 200.0;
+const LETTER_OVER_LETTER: f64 = 2000.0;
 const THROUGH: f64 = 12.0;
 
 /// A text that belongs to a place.
@@ -58,9 +60,11 @@ impl Call {
                 if !rect.contains(&candidate.covered) {
                     continue;
                 }
-                let over = taken.load(&candidate.covered.shrunk(-2.0)) / (0.6 * self.size * self.size);
+                let letter = 0.6 * self.size * self.size;
+                let over = taken.load(&candidate.covered.shrunk(-2.0)) / letter;
+                let over_text = taken.text_load(&candidate.covered) / letter;
                 let through = candidate.leader.map_or(0.0, |line| taken.text_under(line));
-                let cost = distance + LETTER * over + THROUGH * through;
+                let cost = distance + LETTER * over + LETTER_OVER_LETTER * over_text + THROUGH * through;
                 if best.as_ref().is_none_or(|(least, _)| cost < *least) {
                     best = Some((cost, candidate));
                 }

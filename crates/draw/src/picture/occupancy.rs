@@ -76,6 +76,11 @@ impl Occupancy {
         self.cells(rect).into_iter().map(|cell| self.taken[cell]).sum::<f64>() * CELL * CELL
     }
 
+    /// How much of a rectangle text covers, square sheet units.
+    pub(super) fn text_load(&self, rect: &Rect) -> f64 {
+        self.cells(rect).into_iter().filter(|cell| self.taken[*cell] >= TEXT).count() as f64 * CELL * CELL
+    }
+
     /// How much text lies under a line, sheet units.
     pub(super) fn text_under(&self, line: [Place; 2]) -> f64 {
         let cells = along(line).flat_map(|at| self.cells(&at));

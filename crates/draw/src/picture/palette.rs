@@ -31,9 +31,9 @@ const SCALE: [Colour; 5] = [
     Colour([254, 232, 92]),
 ];
 
-/// The colours of patches in their order, for those who draw elsewhere.
+/// The colours of patches in their order, both rounds, for those who draw elsewhere.
 pub(crate) fn patch_colours() -> Vec<String> {
-    PATCHES.iter().map(|colour| colour.hex()).collect()
+    (0..2 * PATCHES.len()).map(|number| of_patch(number).hex()).collect()
 }
 
 /// Colours at even distances from the lowest to the highest value.
@@ -130,6 +130,13 @@ fn byte(value: f64) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn fourteen_patches_have_a_colour_each() {
+        let colours = patch_colours();
+        let different: std::collections::BTreeSet<&String> = colours.iter().collect();
+        assert_eq!((colours.len(), different.len()), (14, 14), "{colours:?}");
+    }
 
     #[test]
     fn the_scale_is_a_scale_in_grey() {

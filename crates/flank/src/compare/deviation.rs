@@ -176,7 +176,7 @@ pub(crate) fn solved<'g>(
     let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
     let told = is_ambiguous.then(|| {
         let at = branches::place(coordinates, effort.anchor);
-        branches::listed(of.surface, &problem.points(&effort.branches), &at)
+        branches::listed(of.surface, (&problem.points(&effort.branches), &effort.courses), &at)
     });
     (points, told)
 }

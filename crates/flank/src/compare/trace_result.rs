@@ -36,6 +36,8 @@ pub struct InvoluteNumbers {
 pub enum InvoluteSource {
     /// Module, number of teeth, pressure angle and helix angle of the job.
     Job,
+    /// The same, where the job leaves module or pressure angle to the tool: as the text has that, whatever is set from outside.
+    Tool,
     /// The flank's normal in its middle: there it has no slopes.
     Flank,
 }

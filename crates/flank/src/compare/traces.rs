@@ -1,6 +1,6 @@
 //! Profile and helix traces of cylindrical flanks against an involute helicoid, as gear measuring machines plot them.
 
-use flank_chain_dsl::Job;
+use flank_chain_dsl::{GeneratedSurface, Job, Solid};
 use flank_solver::{InvoluteHelicoid, InvoluteReference, Outcome, SurfacePoint, TraceEvaluation};
 
 use crate::compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, TraceNumbers};
@@ -35,10 +35,7 @@ pub(crate) fn traces<'j>(
     let name = &solved.surface.name;
     let known: Vec<&SurfacePoint> = solved.points.iter().filter(|point| point.outcome == Outcome::Solved).collect();
     let own = own(&known).ok_or_else(|| format!("`{name}` is no flank of a cylindrical gear with involute teeth"))?;
-    let (helicoid, source) = match told(job, name).and_then(|told| matched(told, own)) {
-        Some(told) => (told, InvoluteSource::Job),
-        None => (own, InvoluteSource::Flank),
-    };
+    let (helicoid, source) = nominal(job, solved, own);
     let area = Area::of_points(&known, helicoid).ok_or_else(|| format!("`{name}` lies below its base circle"))?;
     let line = |targets: &[[f64; 2]]| points(job, solved, &known, targets, session);
     let middle = line(&[[area.middle_face(), helicoid.rho(area.middle_roll())]]);
@@ -81,10 +78,7 @@ pub(crate) fn traces<'j>(
 pub(crate) fn topography(job: &Job<'_>, solved: &Solved<'_, '_>) -> Option<(Vec<Option<f64>>, InvoluteNumbers)> {
     let known: Vec<&SurfacePoint> = solved.points.iter().filter(|point| point.outcome == Outcome::Solved).collect();
     let own = own(&known)?;
-    let (helicoid, source) = match told(job, &solved.surface.name).and_then(|told| matched(told, own)) {
-        Some(told) => (told, InvoluteSource::Job),
-        None => (own, InvoluteSource::Flank),
-    };
+    let (helicoid, source) = nominal(job, solved, own);
     let middle = middle(&known, helicoid)?;
     let reference = helicoid.through(middle.position, middle.normal)?;
     let along_normal = 1e3 * helicoid.base_helix_angle().cos();
@@ -128,20 +122,40 @@ fn are_alike(a: InvoluteHelicoid, b: InvoluteHelicoid) -> bool {
         && (a.base_helix_angle() - b.base_helix_angle()).abs() < PARALLEL
 }
 
+/// What a flank should be, and who says so: the job, if that is nearly what the flank is, else its middle.
+fn nominal(job: &Job<'_>, solved: &Solved<'_, '_>, own: InvoluteHelicoid) -> (InvoluteHelicoid, InvoluteSource) {
+    let told = told(job, solved.surface).and_then(|(told, source)| Some((matched(told, own)?, source)));
+    told.unwrap_or((own, InvoluteSource::Flank))
+}
+
 /// What the parameters of a job say by the names that ISO 21771 has for them: the base cylinder of a gear with this module, number of
-/// teeth, pressure angle and helix angle.
-fn told(job: &Job<'_>, surface: &str) -> Option<InvoluteHelicoid> {
-    let of_tool = |name: &str| job.parameters.iter().find(|of| of.name.rsplit('.').next() == Some(name));
-    let value =
-        |name: &str| job.parameters.iter().find(|of| of.name == name).or_else(|| of_tool(name)).map(|of| of.value);
-    let solid = job.solids.iter().find(|solid| solid.space.iter().any(|at| job.surfaces[*at].name == surface));
-    let own_teeth = job.parameters.iter().find(|of| of.name == "teeth").map(|of| of.value);
-    let teeth = solid.map(|solid| f64::from(solid.teeth)).or(own_teeth)?;
-    let pressure_angle = value("normal_pressure_angle").or_else(|| value("pressure_angle"))?;
-    let helix_angle = job.parameters.iter().find(|of| of.name == "helix_angle").map_or(0.0, |of| of.value);
-    let radius = 0.5 * module(job)? * teeth / helix_angle.cos();
+/// teeth, pressure angle and helix angle. What the job leaves to the tool is what the text says of that: a tool that is set otherwise from
+/// outside makes another flank, and no other gear is meant.
+fn told(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Option<(InvoluteHelicoid, InvoluteSource)> {
+    let named = |name: &str| job.parameters.iter().find(|of| of.name == name);
+    let tool = surface.generation.tool_name.split('.').next().unwrap_or_default();
+    // the normal one first: where there are both, they differ by the helix
+    let either = |name: &str| {
+        let names = [format!("normal_{name}"), name.to_string()];
+        let of_job = names.iter().find_map(|name| named(name)).map(|of| (of.value, InvoluteSource::Job));
+        let of_tool = || {
+            let own = names.iter().find_map(|name| named(&format!("{tool}.{name}")));
+            let of_any = |name: &String| job.parameters.iter().find(|of| of.name.rsplit('.').next() == Some(name));
+            let told = own.or_else(|| names.iter().find_map(of_any))?;
+            Some((told.value_in_text, InvoluteSource::Tool))
+        };
+        of_job.or_else(of_tool)
+    };
+    let is_of = |solid: &&Solid| solid.space.iter().any(|at| job.surfaces[*at].name == surface.name);
+    let own_teeth = || named("teeth").map(|of| of.value);
+    let teeth = job.solids.iter().find(is_of).map(|solid| f64::from(solid.teeth)).or_else(own_teeth)?;
+    let ((module, of_module), (pressure_angle, of_angle)) = (either("module")?, either("pressure_angle")?);
+    let helix_angle = named("helix_angle").map_or(0.0, |of| of.value);
+    let radius = 0.5 * module * teeth / helix_angle.cos();
     let transverse = (pressure_angle.tan() / helix_angle.cos()).atan();
-    Some(InvoluteHelicoid { base_radius: radius * transverse.cos(), twist: helix_angle.tan() / radius })
+    let told = InvoluteHelicoid { base_radius: radius * transverse.cos(), twist: helix_angle.tan() / radius };
+    let source = if of_module == InvoluteSource::Job { of_angle } else { of_module };
+    Some((told, source))
 }
 
 /// The normal module of a job that names it, mm.

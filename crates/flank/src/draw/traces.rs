@@ -43,7 +43,13 @@ pub(crate) fn of_subject(subject: &Subject<'_, '_>) -> Result<Vec<FlankTraces>, 
 pub(crate) fn involute(of: &InvoluteNumbers) -> String {
     let by = match of.source {
         InvoluteSource::Job => "by the parameters of the job",
-        InvoluteSource::Flank => "read off the normal in the middle of the flank",
+        InvoluteSource::Tool => {
+            "by the parameters of the job and what its text says of the tool; parameters `module` and `pressure_angle` of the job say which is meant"
+        }
+        InvoluteSource::Flank => {
+            "read off the normal in the middle of the flank, where slopes therefore vanish; parameters `module`, `teeth`, `pressure_angle` and \
+             `helix_angle` of the job that are nearly the flank's say which is meant"
+        }
     };
     format!(
         "the involute of base diameter {} mm and base helix angle {} deg, {by}",

@@ -84,7 +84,10 @@ fn why_missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<Stri
 }
 
 fn reasons_told(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
-    unsolved::reasons(findings.job, solved).iter().map(|reason| findings.spelled(reason)).collect()
+    unsolved::reasons(findings.job, solved, &findings.subject.solved)
+        .iter()
+        .map(|reason| findings.spelled(reason))
+        .collect()
 }
 
 /// Which roots there are where each surface was begun.

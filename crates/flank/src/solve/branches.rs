@@ -34,9 +34,13 @@ fn proposed(solved: &Solved<'_, '_>) -> Vec<Keep> {
     keep::proposed(&solved.surface.unknowns, &solved.branches, &solved.effort.courses)
 }
 
-/// The branches of a surface at a place, with what would select each.
-pub(crate) fn listed(surface: &GeneratedSurface<'_>, branches: &[SurfacePoint], at: &str) -> NotDone {
-    let keeps = keep::proposed(&surface.unknowns, branches, &[]);
+/// The branches of a surface at a place, with what would select each. `courses` are those of a [`GridReport`](flank_solver::GridReport).
+pub(crate) fn listed(
+    surface: &GeneratedSurface<'_>,
+    (branches, courses): (&[SurfacePoint], &[Vec<Vec<f64>>]),
+    at: &str,
+) -> NotDone {
+    let keeps = keep::proposed(&surface.unknowns, branches, courses);
     listed_with(surface, branches, &keeps, at, |_| String::new())
 }
 

@@ -133,12 +133,20 @@ impl<'g> Found<'_, 'g> {
 
     /// The branches that qualify where nothing chooses between several, with what would select each.
     pub(crate) fn ambiguous(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<NotDone> {
-        let is_ambiguous = self.points.iter().any(|point| point.outcome == Outcome::Ambiguous);
-        is_ambiguous.then(|| {
-            let at = branches::place(&sample.coordinates, self.effort.anchor);
-            branches::listed(surface, &self.problem.points(&self.effort.branches), &at)
-        })
+        ambiguous((&self.problem, &self.points, &self.effort), surface, sample)
     }
+}
+
+fn ambiguous<'g>(
+    (problem, points, effort): (&SurfaceProblem, &[SurfacePoint], &GridReport),
+    surface: &GeneratedSurface<'g>,
+    sample: &Sample<'g>,
+) -> Option<NotDone> {
+    let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
+    is_ambiguous.then(|| {
+        let at = branches::place(&sample.coordinates, effort.anchor);
+        branches::listed(surface, (&problem.points(&effort.branches), &effort.courses), &at)
+    })
 }
 
 /// Solves a surface at the points of a sample, and marks those that the surfaces which trim it cut away, or its own tool in another
@@ -251,6 +259,11 @@ pub(crate) fn as_solved(problem: SurfaceProblem, sample: &Sample<'_>) -> FoundPo
 }
 
 impl FoundPoints {
+    /// The branches that qualify where nothing chooses between several, with what would select each.
+    pub(crate) fn ambiguous<'g>(&self, surface: &GeneratedSurface<'g>, sample: &Sample<'g>) -> Option<NotDone> {
+        ambiguous((&self.problem, &self.points, &self.effort), surface, sample)
+    }
+
     fn new(problem: SurfaceProblem, targets: &[[f64; 2]], counts: [usize; 2]) -> FoundPoints {
         let (points, effort) = problem.solve(targets, counts);
         FoundPoints { problem: Arc::new(problem), points, effort, positions: None }

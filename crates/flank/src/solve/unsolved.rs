@@ -12,8 +12,8 @@ use crate::solve::solved::Solved;
 use crate::solve::summary::Places;
 use crate::solve::surface::bound;
 
-/// Why points of a surface were not solved, with the number of points for each reason.
-pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
+/// Why points of a surface were not solved, with the number of points for each reason. `all` are the surfaces of the job that are sampled.
+pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>, all: &[Solved<'_, '_>]) -> Vec<String> {
     let summary = &solved.summary;
     let mut reasons = Vec::new();
     let mut tell = |count: usize, text: String| {
@@ -35,6 +35,9 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     for (cutter, count) in own.chain(elsewhere).chain(trims).chain(blanks) {
         let is_whole = count == summary.asked;
         let side = match cutter {
+            CutBy::ItsTool if is_whole && all.iter().any(|other| is_left_of_body(solved, other)) => {
+                "; nothing of the surface stays, though the same `body` leaves other pieces of it: on this work it cuts in the free"
+            }
             CutBy::ItsTool if is_whole && is_inside_out(job, solved) => {
                 "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
             }
@@ -75,6 +78,16 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>) -> Vec<String> {
     }
     reasons.extend(solved.needed.iter().map(|needed| needed.text(job, solved.surface)));
     reasons
+}
+
+/// Whether another surface has points, which is made by another piece of the same surface of the tool: their steel lies on one side.
+fn is_left_of_body(solved: &Solved<'_, '_>, other: &Solved<'_, '_>) -> bool {
+    let of = |solved: &Solved<'_, '_>| {
+        let is_piece = solved.surface.unknowns.iter().any(|unknown| unknown.piece.is_some());
+        let whole = solved.surface.generation.tool_name.rsplit_once('.').map(|(whole, _)| whole.to_string());
+        whole.filter(|_| is_piece)
+    };
+    other.summary.solved() > 0 && of(solved).is_some_and(|whole| of(other) == Some(whole))
 }
 
 /// Whether the points of a surface that is cut away whole speak of a `body` on the wrong side.

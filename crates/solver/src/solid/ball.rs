@@ -25,6 +25,8 @@ pub struct BallGauge {
     pub over_balls: f64,
     /// Where it touches, from the axis, mm.
     pub rho: [f64; 2],
+    /// How far it stands out beyond the tip, where an anvil reaches it, mm.
+    pub beyond_tip: f64,
 }
 
 /// Why balls of a size measure no body.
@@ -98,6 +100,7 @@ impl Body {
             centre_rho,
             over_balls: 2.0 * centre_rho * across + self.gauge_side() * diameter,
             rho: [rho(low.at([x[0], x[1]])), rho(high.at([x[2], x[3]]))],
+            beyond_tip: self.gauge_side() * (centre_rho - self.tip_and_root()[0]) + 0.5 * diameter,
         };
         Some((gauge, Vector3::new(x[4], x[5], z)))
     }

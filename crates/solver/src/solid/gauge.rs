@@ -145,7 +145,8 @@ impl Body {
         let [[z, rho, from], [_, _, to]] =
             [low, high].map(|(k, share)| self.arrangement.place(self.charts()[k].at([share, 0.5])));
         let way = self.pitch() - (self.arrangement.near(to, from + 0.5 * self.pitch()) - from);
-        let arc = self.arrangement.arc(rho) * way;
+        // flanks that meet in an edge are none apart, but for what charts are off
+        let arc = Some(self.arrangement.arc(rho) * way).filter(|arc| arc.abs() > ENDS).unwrap_or_default();
         let chord = self.shortest([(high.0, high.1, 0.0), (low.0, low.1, self.pitch())], arc).map(|way| {
             let [p, q] = way.ends;
             let middle = self.depth(self.arrangement.place((0.5 * (p + q)).into()));
@@ -155,10 +156,18 @@ impl Body {
         Some(Thickness { rho, z, arc, chord })
     }
 
-    /// How wide the space is at a distance from the axis, straight and square to its flanks, mm.
-    pub fn space_width(&self, depth: f64) -> Option<f64> {
-        let way = self.across_space(self.flanks().map(|k| Some((k, self.on_flank(k, depth)?, 0.0))))?;
-        Some((way.ends[1] - way.ends[0]).norm())
+    /// The diameter of a ball that touches both flanks about where these have a distance from the axis, mm: its radii there are square to the
+    /// flanks, as far as the shortest way between them tells. `None` where a flank does not reach there, or the space is no wider towards the tip.
+    pub fn ball_touching(&self, depth: f64) -> Option<f64> {
+        let [low, high] = self.flanks();
+        let [on_low, on_high] = [self.on_flank(low, depth)?, self.on_flank(high, depth)?];
+        let way = self.across_space([Some((low, on_low, 0.0)), Some((high, on_high, 0.0))])?;
+        let (_, to_high) = touched(&self.charts()[low], [on_low, 0.5 + way.shift]);
+        let (_, to_low) = touched(&self.charts()[high], [on_high, 0.5 - way.shift]);
+        let across = way.ends[1] - way.ends[0];
+        // the centre lies a radius along either normal
+        let cosine = 0.5 * (to_high - to_low).dot(&across) / across.norm();
+        (cosine > 0.0).then(|| across.norm() / cosine)
     }
 
     /// The shortest way across the first space, from the lower flank to the upper one.

@@ -220,9 +220,17 @@ pub(in super::super) fn line_comment(scan: &Scan, open: usize) -> Option<(&'stat
     Some(("write `//`", whole, format!("//{}", inside.trim_end())))
 }
 
-/// Whether a character is a sign from elsewhere for a part of a value: what stands before it is no whole value.
+/// Whether a character is a sign from elsewhere for a part of a value, the decimal comma among them: what stands before it is no whole value.
 pub(in super::super) fn belongs_to_value(scan: &Scan, index: usize) -> bool {
-    scan.kind(index) == Some(Kind::Strange) && written_here(scan.say(index)).is_some()
+    let is_number = |index: usize| scan.kind(index) == Some(Kind::Number);
+    let is_decimal = || {
+        let (before, after) = (index.checked_sub(1), index + 1);
+        scan.say(index) == ","
+            && before.is_some_and(|before| is_number(before) && scan.place(before).end == scan.place(index).start)
+            && is_number(after)
+            && scan.place(index).end == scan.place(after).start
+    };
+    (scan.kind(index) == Some(Kind::Strange) && written_here(scan.say(index)).is_some()) || is_decimal()
 }
 
 /// What to say of `/*`.

@@ -29,7 +29,7 @@ const DASHES: [f64; 2] = [5.0, 4.0];
 /// Half of the size of a mark.
 const MARK: f64 = 4.5;
 /// A label stands no farther from its place, sheet units.
-const FARTHEST: f64 = 72.0;
+const FARTHEST: f64 = 130.0;
 
 /// A flank on its axes.
 struct FlankMap<'a> {
@@ -163,9 +163,10 @@ impl FlankMap<'_> {
 
     fn draw_path(&self, taken: &mut Occupancy, sheet: &mut Sheet) {
         for (is_edge, line) in &self.flank.path {
-            let places = self.places(line);
-            take(taken, &places);
-            if *is_edge { sheet.dashes(&places, DASHES, PATH, 1.8) } else { sheet.line(&places, PATH, 2.4) }
+            for places in shown(&self.places(line), self.chart.rect) {
+                take(taken, &places);
+                if *is_edge { sheet.dashes(&places, DASHES, PATH, 1.8) } else { sheet.line(&places, PATH, 2.4) }
+            }
         }
     }
 
@@ -181,13 +182,13 @@ impl FlankMap<'_> {
                     StationShape::Point { position, .. } => self.place(*position),
                     StationShape::Line(roll) => self.lines_of_contact(*roll).first().map(|line| line[line.len() / 2]),
                 };
-                let Some(at) = at else { continue };
+                let Some(at) = at.filter(|at| is_shown(*at, self.chart.rect)) else { continue };
                 sheet.polygon(&around(at, 2.2), PATH, PATH, 0.5);
                 call(at, &station.label, 2);
             }
         }
         for mark in &self.flank.marks {
-            let Some(at) = self.place(mark.position) else { continue };
+            let Some(at) = self.place(mark.position).filter(|at| is_shown(*at, self.chart.rect)) else { continue };
             let (fill, outline) = if mark.is_transfer { (INK, WHITE) } else { (WHITE, INK) };
             sheet.polygon(&around(at, MARK), fill, outline, 1.6);
             taken.take(&Rect { left: at[0], top: at[1], right: at[0], bottom: at[1] }.shrunk(-MARK - 2.0));
@@ -197,6 +198,25 @@ impl FlankMap<'_> {
         }
         calls::write(calls, self.chart.rect, taken, sheet);
     }
+}
+
+/// The parts of a line that a rectangle shows: contact at an edge may run beyond the flank.
+fn shown(line: &[Place], rect: Rect) -> Vec<Vec<Place>> {
+    let mut parts: Vec<Vec<Place>> = Vec::new();
+    for pair in line.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let Some((start, end)) = clipped(from, to, rect) else { continue };
+        let at = |share: f64| if share == 1.0 { to } else { [0, 1].map(|k| from[k] + share * (to[k] - from[k])) };
+        match parts.last_mut().filter(|part| start == 0.0 && part.last() == Some(&from)) {
+            Some(part) => part.push(at(end)),
+            None => parts.push(vec![at(start), at(end)]),
+        }
+    }
+    parts
+}
+
+fn is_shown([x, y]: Place, rect: Rect) -> bool {
+    (rect.left..=rect.right).contains(&x) && (rect.top..=rect.bottom).contains(&y)
 }
 
 /// A small circle.
@@ -215,4 +235,21 @@ fn is_within(sides: &[Vec<Place>], [x, y]: Place) -> bool {
         (ay > y) != (by > y) && x < ax + (bx - ax) * (y - ay) / (by - ay)
     };
     sides.iter().flat_map(|side| side.windows(2)).filter(crosses).count() % 2 == 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_drawn_as_far_as_its_frame_goes() {
+        let rect = Rect { left: 0.0, top: 0.0, right: 10.0, bottom: 10.0 };
+        let within = [[1.0, 1.0], [4.0, 7.0], [9.0, 2.0]];
+        assert_eq!(shown(&within, rect), [within.to_vec()]);
+        // out by the lower side, back by it, out by the right one
+        let line = [[2.0, 8.0], [2.0, 12.0], [6.0, 12.0], [6.0, 8.0], [14.0, 8.0]];
+        let parts = [vec![[2.0, 8.0], [2.0, 10.0]], vec![[6.0, 10.0], [6.0, 8.0], [10.0, 8.0]]];
+        assert_eq!(shown(&line, rect), parts);
+        assert_eq!(shown(&[[11.0, 1.0], [12.0, 3.0]], rect), Vec::<Vec<Place>>::new());
+    }
 }

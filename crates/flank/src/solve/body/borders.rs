@@ -102,8 +102,20 @@ impl<'j, 'g> Borders<'j, 'g> {
             }
             [Some(unknown), _] | [_, Some(unknown)] => Ok(unknown),
             [None, None] => {
-                let message = || format!("`{name}` has no unknown that tells its rows apart");
-                piece.across_tool(blank).ok_or_else(|| refused(solid, message(), &[]))
+                let alike = || {
+                    let of: Vec<&str> = piece.surface.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
+                    let message = format!(
+                        "the sampled points of `{name}` lie in one row along the spaces of `{}`: each of its unknowns, {}, follows from how \
+                         far along they lie, and none says what runs across the space",
+                        solid.name,
+                        of.join(" and ")
+                    );
+                    let way = format!(
+                        "in `sample {name}` three values or more of what runs from one flank to the other, each with several along the space"
+                    );
+                    refused(solid, message, &[&way])
+                };
+                piece.across_tool(blank).ok_or_else(alike)
             }
         }
     }

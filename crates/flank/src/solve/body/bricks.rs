@@ -5,7 +5,9 @@ use std::collections::BTreeSet;
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BrickBody, BrickSet, Header};
 use flank_expr::Graph;
-use flank_solver::{Body, BrickFaces, BrickMesh, BrickOrder, BrickSide, SpacePart};
+use flank_solver::{
+    Body, BrickCounts, BrickFaces, BrickMesh, BrickOrder, BrickQuality, BrickSide, OutlineSegment, SpacePart,
+};
 
 use crate::project::choices::{BrickFormat, Choice, ElementOrder};
 use crate::project::failure::Failure;
@@ -30,6 +32,8 @@ const MOST_BYTES: usize = 1 << 30;
 const LEAST_LAND: f64 = 1e-6;
 /// The scaled Jacobian below which bricks are good for nothing.
 const LEAST_SHAPE: f64 = 0.1;
+const STRAIGHT_BLANK: &str = "a blank whose ends run straight from the tip to the bore: below the teeth, lines from every place of the spaces to the rest of the outline \
+     must not cross it, as they do where a web is much narrower than the teeth";
 /// How far the volume of bricks may be off, as a share: stiffness goes by the third power of a width, and is 15 % off by then.
 const MOST_VOLUME: f64 = 0.05;
 /// Bytes of a node, in sections and in place, and of a brick's node, in parts and together.
@@ -113,26 +117,31 @@ fn one(
         ElementOrder::First => BrickOrder::First,
         ElementOrder::Second => BrickOrder::Second,
     };
-    let counts = body.brick_counts(request.elements.map(|count| count as usize));
-    let size = counts.size(body, order, teeth as usize);
-    check_size(&solid.name, size, order)?;
-    let mesh = body.bricks(&counts, order, teeth as usize);
-    let quality = mesh.quality();
-    if quality.least_scaled_jacobian < LEAST_SHAPE || quality.least_jacobian <= 0.0 {
-        let shape = quality.least_scaled_jacobian.min(quality.least_jacobian);
-        let message = format!(
-            "the bricks of `{}` would be folded or nearly so: their least scaled Jacobian is {shape:.3}, and has to be {LEAST_SHAPE} at the least",
-            solid.name
-        );
-        let simpler = "a simpler blank: below the teeth, lines from every place of the spaces to the rest of the outline must not cross it, \
-                       as they do where a web is much narrower than the teeth";
-        let straight = (order == BrickOrder::Second)
-            .then(|| body.bricks(&counts, BrickOrder::First, teeth as usize).quality().least_scaled_jacobian);
-        let straight = straight.filter(|shape| *shape >= LEAST_SHAPE).map(|shape| {
-            format!("bricks of the first order, with option `order`: their least scaled Jacobian is {shape:.3} with the same numbers")
+    let elements = request.elements.map(|count| count as usize);
+    let cut = |counts: BrickCounts| -> Result<(BrickCounts, BrickMesh, BrickQuality), Failure> {
+        check_size(&solid.name, counts.size(body, order, teeth as usize), order)?;
+        let mesh = body.bricks(&counts, order, teeth as usize);
+        let quality = mesh.quality();
+        Ok((counts, mesh, quality))
+    };
+    let (mut counts, mut mesh, mut quality) = cut(body.brick_counts(elements))?;
+    // sections across the teeth do not reach what goes on beyond them
+    if folded(quality).is_some()
+        && let Some(with_shaft) = body.brick_counts_with_shaft(elements)
+    {
+        (counts, mesh, quality) = cut(with_shaft)?;
+    }
+    if let Some(why) = folded(quality) {
+        let straight = || body.bricks(&counts, BrickOrder::First, teeth as usize).quality();
+        let straight = (order == BrickOrder::Second).then(straight).filter(|quality| folded(*quality).is_none());
+        let (message, ways) = of_folded(solid, why, beyond_teeth(body).filter(|_| counts.shaft.is_none()));
+        let straight = straight.map(|quality| {
+            format!(
+                "bricks of the first order, with option `order`: their least scaled Jacobian is {:.3} with the same numbers",
+                quality.least_scaled_jacobian
+            )
         });
-        let ways = ["other numbers with option `elements`"].into_iter().chain(straight.as_deref()).chain([simpler]);
-        return refused(message, &ways.collect::<Vec<&str>>());
+        return refused(message, &straight.as_deref().into_iter().chain(ways).collect::<Vec<&str>>());
     }
     let off = exact_volume(body, teeth).map_or(0.0, |exact| quality.volume / exact - 1.0);
     if off.abs() > MOST_VOLUME {
@@ -166,6 +175,44 @@ fn one(
         }
     }
     Ok(Ok(BrickNumbers::new((&solid.name, &solid.frame), body, &counts, (mesh, quality), sets)))
+}
+
+/// The segment of the outline below the teeth that goes on farthest beyond the ends of these, and by how much, mm.
+fn beyond_teeth(body: &Body) -> Option<(String, f64)> {
+    let blank = body.blank();
+    let beyond = |segment: &OutlineSegment| {
+        [segment.from, segment.to].map(|place| blank.beyond_ends(place)).into_iter().fold(0.0, f64::max)
+    };
+    let rest = blank.rest().into_iter().map(|segment| (segment.name.clone(), beyond(segment)));
+    rest.filter(|(_, by)| *by > LEAST_LAND).reduce(|most, other| if other.1 > most.1 { other } else { most })
+}
+
+/// What bricks that are folded are told as, and ways out; with what of the outline goes on beyond the teeth and has no bricks of its own.
+fn of_folded(solid: &Solid, why: String, beyond: Option<(String, f64)>) -> (String, [&'static str; 2]) {
+    let message = format!("the bricks of `{}` would be folded or nearly so: {why}", solid.name);
+    match beyond {
+        Some((segment, by)) => (
+            format!(
+                "{message}. `{segment}` of the outline goes on beyond the teeth, by up to {}, and bricks follow it only as a shaft with a face at \
+                 its end",
+                length(by)
+            ),
+            [
+                "in a job that extends this one a blank that ends with its teeth: both ends straight from the tip to the bore",
+                "or the whole body for a mesher that fills any: `flank solve` with option `step`",
+            ],
+        ),
+        None => (message, ["other numbers with option `elements`", STRAIGHT_BLANK]),
+    }
+}
+
+/// Why bricks are good for nothing.
+fn folded(quality: BrickQuality) -> Option<String> {
+    let BrickQuality { least_scaled_jacobian: scaled, least_jacobian: least, .. } = quality;
+    if scaled < LEAST_SHAPE {
+        return Some(format!("their least scaled Jacobian is {scaled:.3}, and has to be {LEAST_SHAPE} at the least"));
+    }
+    (least <= 0.0).then(|| format!("their least Jacobian is {least:.3} of a brick's mean, and has to be above 0"))
 }
 
 fn check_size(name: &str, [bricks, nodes]: [usize; 2], order: BrickOrder) -> Result<(), Failure> {

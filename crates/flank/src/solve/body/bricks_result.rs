@@ -3,7 +3,7 @@
 use std::fmt;
 
 use flank_export::BrickSet;
-use flank_solver::{Body, BrickCounts, BrickMesh, BrickOrder, BrickQuality};
+use flank_solver::{Body, BrickCounts, BrickMesh, BrickOrder, BrickQuality, ShaftCounts};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -77,6 +77,17 @@ pub struct ElementCounts {
     pub rim: usize,
     /// Along the tooth.
     pub along: usize,
+    /// Of a shaft that goes on beyond the teeth, where it has bricks of its own; else null.
+    pub shaft: Option<ShaftElements>,
+}
+
+/// Into how many bricks a shaft is cut, as far as it belongs to a tooth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct ShaftElements {
+    /// From below the teeth to the bore.
+    pub rows: usize,
+    /// Along what goes on before the beginning of the teeth and behind their end.
+    pub ends: [usize; 2],
 }
 
 /// A named part of the surface.
@@ -120,6 +131,7 @@ impl BrickNumbers {
                 core: counts.core,
                 rim: counts.rim,
                 along: counts.along,
+                shaft: counts.shaft.map(|ShaftCounts { rows, ends }| ShaftElements { rows, ends }),
             },
             deviation_mm: mesh.deviation,
             volume_mm3: quality.volume,
@@ -172,7 +184,7 @@ impl fmt::Display for BrickNumbers {
         let BrickNumbers { name, frame, teeth, meshed_teeth, element, bricks, nodes, .. } = self;
         let meshed = if meshed_teeth == teeth { "all".to_string() } else { meshed_teeth.to_string() };
         writeln!(f, "solid {name} ({frame}): {meshed} of {teeth} teeth")?;
-        let ElementCounts { across, band, core, rim, along } = &self.elements;
+        let ElementCounts { across, band, core, rim, along, shaft } = &self.elements;
         let across: Vec<String> = across.iter().map(usize::to_string).collect();
         writeln!(f, "  bricks   {bricks} {element} with {nodes} nodes")?;
         writeln!(
@@ -180,6 +192,9 @@ impl fmt::Display for BrickNumbers {
             "  a tooth  {} across its space, {along} along, {band} + {core} + {band} from flank to flank, {rim} below",
             across.join(" + ")
         )?;
+        if let Some(ShaftElements { rows, ends: [before, behind] }) = shaft {
+            writeln!(f, "  a shaft  {rows} below the teeth, {before} along it before them and {behind} behind")?;
+        }
         writeln!(f, "  faces    off the generated surfaces by at most {}", units::off(self.deviation_mm))?;
         let against = match self.exact_volume_mm3 {
             Some(exact) => {

@@ -8,8 +8,14 @@ use crate::solve::body::result::{BallNumbers, BarNumbers, FaceNumbers, GaugeNumb
 
 /// Circles from the form diameter to the tip on which the thickness is told.
 const CIRCLES: usize = 5;
-/// Balls come in such steps, mm.
-const BALL_STEP: f64 = 0.25;
+/// Circles on which balls are looked for.
+const BALL_CIRCLES: usize = 9;
+/// Balls come in steps, so many to a millimetre, of which each has a few at the least.
+const BALL_STEPS: [f64; 3] = [4.0, 20.0, 100.0];
+const FINEST_STEPS: f64 = 1000.0;
+const FEWEST_STEPS: f64 = 4.0;
+/// A ball that touches this near to the circle where the flanks end touches where they end, mm.
+const TOUCHES_END: f64 = 1e-6;
 
 /// A ball of the diameter that is asked for, or of one that touches the flanks as near to their middle as one fits in. Spans and balls are dimensions of
 /// cylindrical gears: those whose tip is a cylinder.
@@ -21,8 +27,7 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
         return GaugeNumbers { tip_diameter_mm: tip, root_diameter_mm: root, ..GaugeNumbers::default() };
     }
     let form = body.form();
-    let circle = circles(body);
-    let thickness = (0..CIRCLES).filter_map(|k| body.thickness(circle(k)));
+    let thickness = circles(body, CIRCLES).into_iter().filter_map(|circle| body.thickness(circle));
     let thickness: Vec<ThicknessNumbers> = thickness.map(|of| thickness_numbers(body, of)).collect();
     if let Arrangement::Straight { pitch } = body.arrangement() {
         let bar = BarNumbers { pitch_mm: pitch, tip_x_mm: tip, root_x_mm: root, form_x_mm: form };
@@ -35,32 +40,42 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
         Some(_) => thickness.first().and_then(|tooth| tooth.diameter_mm).unwrap_or_default(),
         None => 2.0 * of,
     };
+    let balls = is_cylindrical.then(|| fitting(body, ball)).flatten();
     GaugeNumbers {
         tip_diameter_mm: Some(diameters(tip)),
         root_diameter_mm: Some(diameters(root)),
         form_diameters_mm: Some(form.map(diameters)),
         thickness,
         spans: (1..=most).filter_map(|teeth| body.span(teeth)).map(span_numbers).collect(),
-        balls: is_cylindrical.then(|| fitting(body, ball, circle)).flatten().map(ball_numbers),
+        no_ball_fits: is_cylindrical && body.teeth() > 1 && ball.is_none() && balls.is_none(),
+        balls: balls.map(ball_numbers),
         edge_below_tip_mm,
         face,
         bar: None,
     }
 }
 
-/// The ball that is asked for, or the first that fits in of those that touch about on a circle: on the middle one, then on those beside it.
-fn fitting(body: &Body, ball: Option<f64>, circle: impl Fn(usize) -> f64) -> Option<BallGauge> {
+/// The ball that is asked for, or the first that fits in of those that touch on a circle: on the middle one of the flanks, then on those beside
+/// it. It touches flanks alone, and stands out beyond the tip, where an anvil reaches it.
+fn fitting(body: &Body, ball: Option<f64>) -> Option<BallGauge> {
     if let Some(ball) = ball {
         return body.ball(ball).ok();
     }
-    let mut circles: Vec<usize> = (0..CIRCLES).collect();
-    circles.sort_by_key(|k| k.abs_diff(CIRCLES / 2));
-    circles.into_iter().find_map(|k| body.ball(circle_ball(body, circle(k))).ok())
+    let (circle, form) = (circles(body, BALL_CIRCLES), body.form());
+    let touches_flanks = |of: &BallGauge| of.rho.iter().zip(form).all(|(rho, form)| (rho - form).abs() > TOUCHES_END);
+    let mut order: Vec<usize> = (0..BALL_CIRCLES).collect();
+    order.sort_by_key(|k| k.abs_diff(BALL_CIRCLES / 2));
+    let mut balls: Vec<f64> = order.into_iter().filter_map(|k| circle_ball(body, circle[k])).collect();
+    balls.dedup();
+    let fits = |ball: f64| body.ball(ball).ok().filter(|of| touches_flanks(of) && of.beyond_tip > 0.0);
+    balls.into_iter().find_map(fits)
 }
 
-/// About the width of the space where it is touched.
-fn circle_ball(body: &Body, rho: f64) -> f64 {
-    (1.05 * body.space_width(rho).unwrap_or_default() / BALL_STEP).ceil() * BALL_STEP
+/// The ball in whole steps that touches the flanks most nearly where they have a distance from the axis.
+fn circle_ball(body: &Body, rho: f64) -> Option<f64> {
+    let ball = body.ball_touching(rho)?;
+    let of_mm = BALL_STEPS.into_iter().find(|of_mm| ball * of_mm >= FEWEST_STEPS).unwrap_or(FINEST_STEPS);
+    Some((ball * of_mm).round() / of_mm).filter(|ball| *ball > 0.0)
 }
 
 /// Whether spans and balls are dimensions of it: its tip is a cylinder.
@@ -88,16 +103,16 @@ pub(crate) fn no_ball(name: &str, (body, surfaces): (&Body, &[String]), ball: f6
             format!("balls of {ball} mm in opposite spaces of `{name}` would lie in each other")
         }
     };
-    let fits = fitting(body, None, circles(body)).filter(|_| has_one);
+    let fits = fitting(body, None).filter(|_| has_one);
     let way = fits.map(|of| format!("balls of {} mm fit", of.diameter));
     NotDone::new(NotDoneKind::NoBall, name, message).with(way.into_iter().collect())
 }
 
-/// The circles from the form diameter to the tip.
-fn circles(body: &Body) -> impl Fn(usize) -> f64 {
+/// So many circles from the form diameter to the tip.
+fn circles(body: &Body, count: usize) -> Vec<f64> {
     let ([tip, _], form) = (body.tip_and_root(), body.form());
     let deepest = if body.is_external() { form[0].max(form[1]) } else { form[0].min(form[1]) };
-    move |k: usize| deepest + (tip - deepest) * k as f64 / (CIRCLES - 1) as f64
+    (0..count).map(|k| deepest + (tip - deepest) * k as f64 / (count - 1) as f64).collect()
 }
 
 fn thickness_numbers(body: &Body, of: Thickness) -> ThicknessNumbers {

@@ -90,7 +90,8 @@ impl<'j, 'g> Piece<'j, 'g> {
         let solved = session.sample((job, surface), &sample, SOLVED, || as_solved(problem(), &sample));
         let is_solved = |point: &SurfacePoint| point.outcome == Outcome::Solved;
         if !solved.points.iter().any(is_solved) {
-            return Err(refusal::unsolved(job, (solid, surface), &solved.points));
+            let branches = solved.ambiguous(surface, &sample);
+            return Err(refusal::unsolved(job, (solid, surface), &solved.points, branches));
         }
         Ok(piece(solved.points.into_iter().filter(is_solved).collect()))
     }

@@ -10,6 +10,9 @@ use crate::solve::blank;
 use crate::solve::body::smooth::BeyondEnds;
 use crate::solve::reasons;
 
+/// A solved point is on an outline that is no farther away, mm: rounding.
+const ON: f64 = 1e-6;
+
 /// That a solid has no body, with ways out.
 pub(crate) fn refused(solid: &Solid, message: String, ways: &[&str]) -> Failure {
     let ways = ways.iter().map(ToString::to_string).collect();
@@ -55,12 +58,18 @@ pub(crate) fn no_sides(solid: &Solid, BeyondEnds { segment, by }: &BeyondEnds) -
     NotDone::new(NotDoneKind::FaceInexact, &solid.name, message).with(ways.into())
 }
 
-/// A surface of a space of whose sample no point is solved: for which reasons, with how many points for each.
+/// A surface of a space of whose sample no point is solved: which branches it has, if nothing chooses between several; else for which
+/// reasons, with how many points for each.
 pub(crate) fn unsolved(
     job: &Job<'_>,
     (solid, surface): (&Solid, &GeneratedSurface<'_>),
     points: &[SurfacePoint],
+    branches: Option<NotDone>,
 ) -> Failure {
+    if let Some(NotDone { message, details, .. }) = branches {
+        let message = format!("`{}` bounds the spaces of `{}` and is {message}", surface.name, solid.name);
+        return Failure::NotDone(vec![NotDone::new(NotDoneKind::NoBody, &solid.name, message).with(details)]);
+    }
     let reason = |point: &SurfacePoint| {
         let word = match point.outcome {
             Outcome::CutAway(_) => "cut away",
@@ -182,6 +191,37 @@ pub(crate) fn faulty(solid: &Solid, (blank, names, has_edge): (&Blank, &[&str], 
             &[&format!("`{}` farther from the spaces, or spaces that are less deep", name(segment))],
         ),
     }
+}
+
+/// That the flanks of a space lie outside the outline that they are to be cut into; nothing where a sampled point of one lies in it. Each
+/// surface of the space has the places of its points in the section of the outline.
+pub(crate) fn elsewhere(solid: &Solid, blank: &Blank, surfaces: &[(&str, Vec<[f64; 2]>)]) -> Option<Failure> {
+    let [first, .., last] = surfaces else { return None };
+    // flanks may be sampled up to the tip itself
+    let is_inside = |place: &[f64; 2]| blank.outline.holds(*place) && blank.outline.segments_at(*place, ON).is_empty();
+    if [first, last].into_iter().flat_map(|(_, places)| places).any(is_inside) {
+        return None;
+    }
+    let ends = |depths: &mut dyn Iterator<Item = f64>| {
+        let [low, high] = depths.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], x| [a.min(x), b.max(x)]);
+        let [low, high] = [low, high].map(|end| format!("{end:.4}"));
+        if low == high { format!("{low} mm") } else { format!("{low} .. {high} mm") }
+    };
+    let segments = blank.outline.segments();
+    let outline = ends(&mut segments.iter().flat_map(|segment| segment.places(3)).map(|place| place[1]));
+    let flanks = ends(&mut first.1.iter().chain(&last.1).map(|place| place[1]));
+    let ground = ends(&mut surfaces[surfaces.len() / 2].1.iter().map(|place| place[1]));
+    let from = if blank::arrangement(solid).is_closed() { "from the axis" } else { "in x" };
+    let message = format!(
+        "the outline of `{}` lies beside its spaces: it has its material {outline} {from}, and no sampled point of `{}` and `{}`, \
+         which are {flanks} {from}, lies in it",
+        solid.name, first.0, last.0
+    );
+    let way = format!(
+        "an outline around the teeth: one segment as their tip, and those below the teeth on the other side of the ground of the \
+         spaces, which is {ground} {from}"
+    );
+    Some(refused(solid, message, &[&way]))
 }
 
 /// The way out where surfaces cross: they are neighbours, once what lies between them is gone.

@@ -97,9 +97,12 @@ pub struct GaugeNumbers {
     pub thickness: Vec<ThicknessNumbers>,
     /// Over some teeth of a cylindrical gear, all that planes can touch.
     pub spans: Vec<SpanNumbers>,
-    /// Over balls, or between them in an internal gear; null where no ball of the size touches both flanks, and unless the tip is a
-    /// cylinder.
+    /// Over balls, or between them in an internal gear; null where no ball of the size touches both flanks, or none fits in if no size is asked for,
+    /// and unless the tip is a cylinder.
     pub balls: Option<BallNumbers>,
+    /// Whether no ball fits in of a cylindrical gear for which no size is asked for: one that touches both flanks within their ends and nothing
+    /// else, and stands out beyond the tip.
+    pub no_ball_fits: bool,
 }
 
 /// Places along the axis of a gear with teeth on its face.
@@ -290,6 +293,10 @@ impl fmt::Display for GaugeNumbers {
                 f,
                 "  balls    {over_balls_mm:.4} mm by balls of {ball_mm} mm, touching at {a:.3} mm and {b:.3} mm"
             )?;
+        }
+        if self.no_ball_fits {
+            let why = "touches both flanks within their ends and nothing else, and stands out beyond the tip";
+            writeln!(f, "  balls    none {why}")?;
         }
         Ok(())
     }

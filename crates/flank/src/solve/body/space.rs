@@ -60,8 +60,13 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
         return Err(refused(solid, message, &["name them in their order in `of: […]`, the root among them"]));
     }
     let names: Vec<&str> = spaces[0].iter().map(|piece| piece.surface.name.as_str()).collect();
-    let faulty = |fault: BodyFault, has_edge: bool| refusal::faulty(solid, (&blank, &names, has_edge), fault);
-    let (body, off) = match between(solid, (&spaces, &borders, &blank), session)? {
+    // what follows from an outline elsewhere is no reason of its own
+    let outside = |failure: Failure| match failure {
+        Failure::NotDone(_) => elsewhere(solid, &spaces[0], &blank).unwrap_or(failure),
+        _ => failure,
+    };
+    let faulty = |fault: BodyFault, has_edge: bool| outside(refusal::faulty(solid, (&blank, &names, has_edge), fault));
+    let (body, off) = match between(solid, (&spaces, &borders, &blank), session).map_err(outside)? {
         (Ok(body), off) => (body, off),
         (Err(fault), _) => {
             let has_edge = borders[0].has_edge();
@@ -76,6 +81,16 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
         }
     };
     Ok(Space { body, names: names.into_iter().map(str::to_string).collect(), off })
+}
+
+/// That the flanks of a space lie outside the outline, if they do.
+fn elsewhere(solid: &Solid, pieces: &[Piece<'_, '_>], blank: &Blank) -> Option<Failure> {
+    let places = |piece: &Piece<'_, '_>| {
+        piece.known.iter().map(|point| piece.arrangement.section(point.position)).collect::<Vec<[f64; 2]>>()
+    };
+    let surfaces: Vec<(&str, Vec<[f64; 2]>)> =
+        pieces.iter().map(|piece| (piece.surface.name.as_str(), places(piece))).collect();
+    refusal::elsewhere(solid, blank, &surfaces)
 }
 
 /// The job of each space that differs from the first one, and of that: its parameter says which space it is.

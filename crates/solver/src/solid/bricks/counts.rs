@@ -2,6 +2,8 @@
 
 use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
+use crate::solid::bricks::layout;
+use crate::solid::bricks::shaft::{Shaft, ShaftCounts};
 
 /// Samples of a line across a chart by which its length is measured.
 const SAMPLES: usize = 1024;
@@ -13,6 +15,8 @@ const TURN: f64 = 0.21;
 const GROWTH: f64 = 1.5;
 /// The thickness of bricks in the middle of a tooth, of those at a flank.
 const GRADING: f64 = 2.25;
+/// Rows by which the sides of a tooth may differ in where its core ends: the corners there lose less than by rows that are longer.
+const APART: usize = 2;
 /// Sections in which the land of a tooth is looked at.
 const LANDS: usize = 16;
 /// Bricks below the root at the most.
@@ -21,7 +25,7 @@ const MOST_BELOW: usize = 256;
 /// How many bricks a tooth is cut into.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct BrickCounts {
-    /// Across each chart of a space. The last has as many as the first, the last but one as the second; one in the middle has an even number.
+    /// Across each chart of a space: as many on one side of its middle as on the other. One in the middle has an even number.
     pub charts: Vec<usize>,
     /// Layers along flanks, fillets and roots.
     pub band: usize,
@@ -31,6 +35,8 @@ pub struct BrickCounts {
     pub rim: usize,
     /// Along the tooth.
     pub along: usize,
+    /// Of a shaft that goes on beyond the teeth, where sections across these end at it.
+    pub shaft: Option<ShaftCounts>,
 }
 
 impl Body {
@@ -39,7 +45,22 @@ impl Body {
     ///
     /// # Panics
     /// If there are none up a flank, or fewer than three from flank to flank.
-    pub fn brick_counts(&self, [profile, along, thickness]: [usize; 3]) -> BrickCounts {
+    pub fn brick_counts(&self, counts: [usize; 3]) -> BrickCounts {
+        self.counts_above(counts, None)
+    }
+
+    /// The same of a blank that goes on beyond its teeth below their root, which has bricks of its own; `None` of others, and where the corners of its
+    /// outline leave no room for these.
+    ///
+    /// # Panics
+    /// As that.
+    pub fn brick_counts_with_shaft(&self, counts: [usize; 3]) -> Option<BrickCounts> {
+        let shaft = Shaft::of_blank(self.blank())?;
+        let counts = self.counts_above(counts, Some(&shaft));
+        shaft.lattice(counts.shaft?, counts.along, 1).map(|_| counts)
+    }
+
+    fn counts_above(&self, [profile, along, thickness]: [usize; 3], shaft: Option<&Shaft<'_>>) -> BrickCounts {
         assert!(profile > 0 && thickness > 2, "a brick up the flank, and three from flank to flank");
         let last = self.charts().len() - 1;
         let finer = profile as f64 / USUAL;
@@ -50,17 +71,65 @@ impl Body {
             let (length, turn) = measured[k];
             (length / size).max(turn / TURN * finer).ceil().max(1.0) as usize
         };
-        let mut charts: Vec<usize> = (0..=last).map(|k| wanted(k).max(wanted(last - k))).collect();
+        let own: Vec<usize> = (0..=last).map(wanted).collect();
+        let mut charts: Vec<usize> = (0..=last).map(|k| own[k].max(own[last - k])).collect();
         flanks.into_iter().for_each(|k| (charts[k], charts[last - k]) = (profile, profile));
         if last.is_multiple_of(2) {
             charts[last / 2] = charts[last / 2].next_multiple_of(2);
         }
+        let middle = self.middle_below(shaft);
+        let charts = self.parting_alike(charts, &own, middle);
         let band = ((thickness as f64 / 3.0).round() as usize).max(1);
-        let along = along.max(self.blank().rest().len()).max(1);
+        let least = if shaft.is_some() { 1 } else { self.blank().rest().len() };
+        let along = along.max(least).max(1);
         let growth = GROWTH.powf(1.0 / finer);
-        let layers = (1.0 + self.depth_below() * (growth - 1.0) / size).ln() / growth.ln();
+        let layers = (1.0 + self.depth_below(middle) * (growth - 1.0) / size).ln() / growth.ln();
         let rim = (layers.round() as usize).clamp(2, MOST_BELOW);
-        BrickCounts { charts, band, core: thickness - 2 * band, rim, along }
+        let shaft = shaft.map(|shaft| shaft.counts(along));
+        BrickCounts { charts, band, core: thickness - 2 * band, rim, along, shaft }
+    }
+
+    /// Counts of charts that are the same on both sides, or with more on each where flanks lean so differently that the core of a tooth would end far
+    /// from where the one fillet or the other has turned for it: as many rows above that place on either side, and as many below.
+    fn parting_alike(&self, charts: Vec<usize>, own: &[usize], middle: [f64; 2]) -> Vec<usize> {
+        let depths = layout::depths(self, &charts, middle);
+        if depths[0].abs_diff(depths[1]) < APART {
+            return charts;
+        }
+        let last = charts.len() - 1;
+        let at = |side: usize, k: usize| if side == 0 { k } else { last - k };
+        // the chart in which it lies, and how many rows of that are above
+        let place = |side: usize| {
+            let (mut k, mut above) = (0, depths[side]);
+            while above > charts[at(side, k)] {
+                above -= charts[at(side, k)];
+                k += 1;
+            }
+            (k, above)
+        };
+        let [(parting, first), (other, second)] = [place(0), place(1)];
+        let flanks = self.flanks();
+        if parting != other || 2 * parting >= last || parting <= flanks[0] || last - parting >= flanks[1] {
+            return charts;
+        }
+        // of the chart in which that place lies the share below it; as many rows there as either side wants
+        let share = |side: usize, above: usize| 1.0 - above as f64 / charts[at(side, parting)] as f64;
+        let below = [share(0, first), share(1, second)];
+        let wanted = |side: usize| below[side] * own[at(side, parting)] as f64;
+        let rows_below = wanted(0).max(wanted(1)).ceil().max(1.0);
+        if below.contains(&0.0) {
+            return charts;
+        }
+        let mut charts = charts;
+        let mut rows = [0; 2];
+        for side in [0, 1] {
+            let above = (rows_below / below[side] - rows_below).round() as usize;
+            charts[at(side, parting)] = above + rows_below as usize;
+            rows[side] = above + (0..parting).map(|k| charts[at(side, k)]).sum::<usize>();
+        }
+        let most = rows[0].max(rows[1]);
+        (0..2).for_each(|side| charts[flanks[side]] += most - rows[side]);
+        charts
     }
 
     /// How wide the land of a tooth is where it is narrowest, mm: 0 where teeth end in an edge.
@@ -75,22 +144,26 @@ impl Body {
         (0..self.distinct()).map(of_tooth).fold(f64::INFINITY, f64::min)
     }
 
-    /// From the middle of the root to the rest of the outline, half-way along, mm.
-    fn depth_below(&self) -> f64 {
+    /// From the middle of the root to a place below, half-way along, mm.
+    fn depth_below(&self, [below_z, below_rho]: [f64; 2]) -> f64 {
         let line = &self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &[0.5])[0];
         let [z, rho, _] = line[line.len() / 2];
-        let [below_z, below_rho] = self.middle_below();
         (z - below_z).hypot(rho - below_rho)
     }
 
-    /// A place `[z, rho]` about the middle of the rest of the outline, whatever the tooth is cut into.
-    pub(crate) fn middle_below(&self) -> [f64; 2] {
+    /// A place `[z, rho]` about the middle of the rest of the outline, or of the line above a shaft, whatever the tooth is cut into.
+    pub(crate) fn middle_below(&self, shaft: Option<&Shaft<'_>>) -> [f64; 2] {
         let segments = self.blank().rest().len();
-        self.blank().below(2 * segments)[segments]
+        shaft.map_or_else(|| self.blank().below(2 * segments)[segments], Shaft::middle)
     }
 }
 
 impl BrickCounts {
+    /// What is below the teeth of a body that these are of.
+    pub(crate) fn shaft_of<'b>(&self, body: &'b Body) -> Option<Shaft<'b>> {
+        self.shaft.and_then(|_| Shaft::of_blank(body.blank()))
+    }
+
     /// How thick the band is beside a tooth, of half the tooth.
     pub(crate) fn band_share(&self) -> f64 {
         let growth = self.band_growth();

@@ -7,7 +7,7 @@
 use crate::solid::arrangement::Polar;
 use crate::solid::body::Body;
 use crate::solid::bricks::BrickOrder;
-use crate::solid::bricks::counts::BrickCounts;
+use crate::solid::bricks::counts::{BrickCounts, even_shares};
 use crate::solid::bricks::section::normals;
 
 /// The core of a tooth ends where the band has turned by so much from the flank's direction, as a sine: the cells that meet there have the best
@@ -22,6 +22,8 @@ pub(crate) enum CellSide {
     Tip,
     /// The rest of the outline.
     Below,
+    /// The shaft's own surface, beyond the teeth; inside below these.
+    Above,
     /// The middle of the space before the tooth.
     Before,
     /// The middle of the space behind it.
@@ -33,6 +35,8 @@ pub(crate) enum CellSide {
 pub(crate) struct Cell {
     pub(crate) nodes: [usize; 8],
     pub(crate) sides: [CellSide; 4],
+    /// Of a cell of the shaft, which goes on beyond the teeth: its row.
+    pub(crate) shaft_row: Option<usize>,
 }
 
 /// Blocks of a lattice of nodes, and its cells. Counts of nodes are in steps of the lattice.
@@ -47,6 +51,8 @@ pub(crate) struct Layout {
     pub(crate) band: usize,
     pub(crate) core: usize,
     pub(crate) rim: usize,
+    /// From the rim to the bottom of a shaft.
+    pub(crate) shaft: usize,
     /// Nodes of a section.
     pub(crate) nodes: usize,
     pub(crate) cells: Vec<Cell>,
@@ -83,11 +89,12 @@ impl Layout {
             band: counts.band * steps,
             core: counts.core * steps,
             rim: counts.rim * steps,
+            shaft: counts.shaft.map_or(0, |shaft| shaft.rows * steps),
             nodes: 0,
             cells: Vec::new(),
             used: Vec::new(),
         };
-        layout.nodes = layout.in_rim(layout.rim, layout.width()) + 1;
+        layout.nodes = layout.in_rim(layout.rim + layout.shaft, layout.width()) + 1;
         layout.cells = layout.all_cells(&chart_of_row(counts, profile));
         layout.used = vec![Use::Nothing; layout.nodes];
         for cell in &layout.cells {
@@ -121,7 +128,12 @@ impl Layout {
         2 * (self.profile + 1) * (self.band + 1) + row * (self.core - 1) + column - 1
     }
 
-    /// A node of the rim: from the bands and the tooth's core down, from one middle of the root to the next.
+    /// Whether a node lies on the line between teeth and shaft or below it.
+    pub(crate) fn is_of_shaft(&self, node: usize) -> bool {
+        self.shaft > 0 && node >= self.in_rim(self.rim, 0)
+    }
+
+    /// A node of the rim: from the bands and the tooth's core down, from one middle of the root to the next; behind it those of a shaft.
     pub(crate) fn in_rim(&self, row: usize, column: usize) -> usize {
         if row > 0 {
             let before = 2 * (self.profile + 1) * (self.band + 1) + (self.depth + 1) * (self.core - 1);
@@ -187,15 +199,17 @@ impl Layout {
             let sides = [tip, CellSide::Inner, CellSide::Inner, CellSide::Inner];
             cells.push(self.cell((i, j), &|row, column| self.in_core(row, column), sides));
         }
-        for (i, j) in lattice(self.rim, self.width()) {
+        for (i, j) in lattice(self.rim + self.shaft, self.width()) {
             let on = |is_so: bool, side: CellSide| if is_so { side } else { CellSide::Inner };
             let sides = [
-                CellSide::Inner,
+                on(i * steps == self.rim, CellSide::Above),
                 on((j + 1) * steps == self.width(), CellSide::Behind),
-                on((i + 1) * steps == self.rim, CellSide::Below),
+                on((i + 1) * steps == self.rim + self.shaft, CellSide::Below),
                 on(j == 0, CellSide::Before),
             ];
-            cells.push(self.cell((i, j), &|row, column| self.in_rim(row, column), sides));
+            let shaft_row = i.checked_sub(self.rim / steps);
+            let cell = self.cell((i, j), &|row, column| self.in_rim(row, column), sides);
+            cells.push(Cell { shaft_row, ..cell });
         }
         cells
     }
@@ -207,7 +221,7 @@ impl Layout {
         let (all, half) = (self.steps, self.steps / 2);
         let nodes =
             [at(0, 0), at(0, all), at(all, all), at(all, 0), at(0, half), at(half, all), at(all, half), at(half, 0)];
-        Cell { nodes, sides }
+        Cell { nodes, sides, shaft_row: None }
     }
 }
 
@@ -223,9 +237,22 @@ fn chart_of_row(counts: &BrickCounts, profile: usize) -> impl Fn(Hand, usize) ->
 
 /// Rows of corners from the tip to where the tooth's core ends, half-way along.
 fn depth(body: &Body, counts: &BrickCounts, profile: usize) -> usize {
-    let stations = counts.stations(body, BrickOrder::First);
-    let line: Vec<Polar> = body.lines(&stations.across, &[0.5]).remove(0);
-    let normals = normals(&line, body.middle_below(), body.arrangement());
-    let turned = |row: usize| normals[row][1].max(normals[2 * profile - row][1]);
-    (1..profile).rev().find(|row| turned(*row) <= TURNED).unwrap_or(1)
+    let turned = turned(body, &counts.charts, body.middle_below(counts.shaft_of(body).as_ref()));
+    let most = |row: usize| turned[row].max(turned[2 * profile - row]);
+    (1..profile).rev().find(|row| most(*row) <= TURNED).unwrap_or(1)
+}
+
+/// Rows of corners from the tip to where each side of a space, half-way along, has turned so far that the core of a tooth ends there.
+pub(crate) fn depths(body: &Body, charts: &[usize], below: [f64; 2]) -> [usize; 2] {
+    let turned = turned(body, charts, below);
+    let (last, profile) = (turned.len() - 1, turned.len() / 2);
+    let depth = |turned: &dyn Fn(usize) -> f64| (1..profile).rev().find(|row| turned(*row) <= TURNED).unwrap_or(1);
+    [depth(&|row| turned[row]), depth(&|row| turned[last - row])]
+}
+
+/// How far the corners of a line across a space have turned from the direction towards a place below, as a sine.
+fn turned(body: &Body, charts: &[usize], below: [f64; 2]) -> Vec<f64> {
+    let across: Vec<Vec<f64>> = charts.iter().enumerate().map(|(k, count)| even_shares(body, k, *count)).collect();
+    let line: Vec<Polar> = body.lines(&across, &[0.5]).remove(0);
+    normals(&line, below, body.arrangement()).iter().map(|normal| normal[1]).collect()
 }

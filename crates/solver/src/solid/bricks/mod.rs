@@ -9,6 +9,7 @@ pub(crate) mod element;
 pub(crate) mod layout;
 pub(crate) mod quality;
 pub(crate) mod section;
+pub(crate) mod shaft;
 pub(crate) mod skin;
 
 use std::collections::BTreeMap;
@@ -20,6 +21,7 @@ use crate::solid::body::{Body, shifted};
 use crate::solid::bricks::counts::{BrickCounts, refined};
 use crate::solid::bricks::layout::{Cell, CellSide, Layout};
 use crate::solid::bricks::section::Sections;
+use crate::solid::bricks::shaft::ShaftLattice;
 
 /// The order of a brick's shape functions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -134,15 +136,16 @@ impl Body {
         let layout = Layout::new(self, counts, order);
         let places = |tooth: usize| {
             let sections = Sections::new((self, tooth), &layout, counts, &stations);
-            (0..stations.along.len()).into_par_iter().map(|a| sections.places(a)).collect::<Vec<Vec<Polar>>>()
+            (0..stations.sections()).into_par_iter().map(|a| sections.places(a)).collect::<Vec<Vec<Polar>>>()
         };
         let places: Vec<Vec<Vec<Polar>>> = (0..self.distinct().min(teeth)).map(places).collect();
         let is_ring = teeth == self.teeth() as usize && self.arrangement.is_closed();
-        let numbers = Numbers::new(&layout, stations.along.len(), (teeth, is_ring));
+        let numbers = Numbers::new(&layout, &stations, (teeth, is_ring));
         let nodes = numbers.positions(self, &places);
-        let is_forward = is_forward(self.arrangement, layout.cells[0], &places[0], order.steps());
-        let bricks = bricks_of(&layout, &numbers, (counts.along, is_forward), order);
-        let faces = faces_of(self, &layout, counts, (teeth, numbers.is_ring), is_forward);
+        let of_teeth = &places[0][stations.before()..];
+        let is_forward = is_forward(self.arrangement, layout.cells[0], of_teeth, order.steps());
+        let bricks = bricks_of(&layout, &numbers, (counts, is_forward), order);
+        let faces = faces_of(self, &layout, (counts, &stations), (teeth, numbers.is_ring), is_forward);
         BrickMesh { order, nodes, bricks, teeth, faces, deviation: skin::deviation(self, &stations, order) }
     }
 }
@@ -170,12 +173,14 @@ struct Numbers<'l> {
 }
 
 impl<'l> Numbers<'l> {
-    fn new(layout: &'l Layout, sections: usize, (teeth, is_ring): (usize, bool)) -> Numbers<'l> {
+    fn new(layout: &'l Layout, stations: &Stations, (teeth, is_ring): (usize, bool)) -> Numbers<'l> {
+        let sections = stations.sections();
         let (mut own, mut of_tooth, mut last) = (vec![None; sections * layout.nodes], 0, BTreeMap::new());
         for section in 0..sections {
             let is_between = !section.is_multiple_of(layout.steps);
+            let is_of_teeth = stations.of_teeth(section).is_some();
             for node in 0..layout.nodes {
-                if !layout.is_used(node, is_between) {
+                if !layout.is_used(node, is_between) || !(is_of_teeth || layout.is_of_shaft(node)) {
                     continue;
                 }
                 if layout.twin(node).is_some() {
@@ -226,7 +231,7 @@ impl<'l> Numbers<'l> {
 fn bricks_of(
     layout: &Layout,
     numbers: &Numbers<'_>,
-    (along, is_forward): (usize, bool),
+    (counts, is_forward): (&BrickCounts, bool),
     order: BrickOrder,
 ) -> Vec<u32> {
     let steps = order.steps();
@@ -244,47 +249,68 @@ fn bricks_of(
         nodes
     };
     let layers: Vec<(usize, usize)> =
-        (0..numbers.teeth).flat_map(|tooth| (0..along).map(move |a| (tooth, a))).collect();
-    let layer =
-        |(tooth, a): (usize, usize)| layout.cells.iter().flat_map(|cell| brick(tooth, a, cell)).collect::<Vec<u32>>();
+        (0..numbers.teeth).flat_map(|tooth| (0..counts.layers()).map(move |a| (tooth, a))).collect();
+    let layer = |(tooth, a): (usize, usize)| {
+        layout
+            .cells
+            .iter()
+            .filter(|cell| counts.has(a, cell))
+            .flat_map(|cell| brick(tooth, a, cell))
+            .collect::<Vec<u32>>()
+    };
     layers.into_par_iter().map(layer).collect::<Vec<Vec<u32>>>().concat()
 }
 
 fn faces_of(
     body: &Body,
     layout: &Layout,
-    counts: &BrickCounts,
+    (counts, stations): (&BrickCounts, &Stations),
     (teeth, is_ring): (usize, bool),
     is_forward: bool,
 ) -> Vec<BrickFaces> {
-    let blank = body.blank();
-    let below = blank.below_cells(counts.along);
+    let ends = body.blank().ends;
+    let shaft = stations.shaft.as_ref();
+    let below = stations.below_segments(body, counts);
+    let [before, _] = counts.shaft.map_or([0, 0], |shaft| shaft.ends);
     let mut found: BTreeMap<(BrickSide, usize), Vec<(u32, u8)>> = BTreeMap::new();
     let [first, last] = if is_forward { [0, 1] } else { [1, 0] };
-    let of_tooth = layout.cells.len() * counts.along;
+    let mut brick = 0;
     for tooth in 0..teeth {
-        for (a, (segment, _)) in below.iter().enumerate() {
-            for (c, cell) in layout.cells.iter().enumerate() {
-                let brick = (tooth * of_tooth + a * layout.cells.len() + c) as u32;
+        for (a, below) in below.iter().enumerate() {
+            for cell in layout.cells.iter().filter(|cell| counts.has(a, cell)) {
                 let mut add = |side, face| found.entry((side, tooth)).or_default().push((brick, face));
-                if a == 0 {
-                    add(BrickSide::Outline(blank.ends[0]), first);
+                // where teeth end, or a shaft
+                let [from, to] = match cell.shaft_row {
+                    None => [before, before + counts.along - 1],
+                    Some(_) => [0, counts.layers() - 1],
+                };
+                let end = |side: usize| match (cell.shaft_row, shaft) {
+                    (Some(row), Some(shaft)) => shaft.sides[side][row],
+                    _ => ends[2 * side],
+                };
+                if a == from {
+                    add(BrickSide::Outline(end(0)), first);
                 }
-                if a + 1 == counts.along {
-                    add(BrickSide::Outline(blank.ends[2]), last);
+                if a == to {
+                    add(BrickSide::Outline(end(1)), last);
                 }
                 for (k, side) in cell.sides.iter().enumerate() {
                     let side = match side {
                         CellSide::Inner => continue,
                         CellSide::Chart(chart) => BrickSide::Chart(*chart),
-                        CellSide::Tip => BrickSide::Outline(blank.ends[1]),
-                        CellSide::Below => BrickSide::Outline(*segment),
+                        CellSide::Tip => BrickSide::Outline(ends[1]),
+                        CellSide::Below => BrickSide::Outline(*below),
+                        CellSide::Above => match shaft.and_then(|shaft| shaft.above(a, counts.along)) {
+                            Some(segment) => BrickSide::Outline(segment),
+                            None => continue,
+                        },
                         CellSide::Before if tooth == 0 && !is_ring => BrickSide::Cut(0),
                         CellSide::Behind if tooth + 1 == teeth && !is_ring => BrickSide::Cut(1),
                         CellSide::Before | CellSide::Behind => continue,
                     };
                     add(side, 2 + k as u8);
                 }
+                brick += 1;
             }
         }
     }
@@ -297,22 +323,80 @@ pub(crate) struct Stations {
     pub(crate) across: Vec<Vec<f64>>,
     /// Shares along the tooth.
     pub(crate) along: Vec<f64>,
-    /// The place on the rest of the outline below each section, `[z, rho]`.
+    /// Layers along the tooth.
+    pub(crate) layers: usize,
+    /// The place below each section `[z, rho]`: on the rest of the outline, or on the line above a shaft.
     pub(crate) below: Vec<[f64; 2]>,
+    /// Below that, and beyond the teeth.
+    pub(crate) shaft: Option<ShaftLattice>,
+}
+
+impl Stations {
+    /// Sections before the first one across the teeth.
+    pub(crate) fn before(&self) -> usize {
+        let steps = (self.below.len() - 1) / self.layers;
+        self.shaft.as_ref().map_or(0, |shaft| shaft.top[0].len() * steps)
+    }
+
+    /// All sections, those of a shaft alone among them.
+    pub(crate) fn sections(&self) -> usize {
+        self.shaft.as_ref().map_or(self.along.len(), |shaft| shaft.places.len())
+    }
+
+    /// The section across the teeth that one is, if it is one.
+    pub(crate) fn of_teeth(&self, section: usize) -> Option<usize> {
+        section.checked_sub(self.before()).filter(|section| *section < self.along.len())
+    }
+
+    /// The segment of the outline below each layer.
+    fn below_segments(&self, body: &Body, counts: &BrickCounts) -> Vec<usize> {
+        match &self.shaft {
+            Some(shaft) => shaft.bottom.clone(),
+            None => body.blank().below_cells(counts.along).into_iter().map(|(segment, _)| segment).collect(),
+        }
+    }
 }
 
 impl BrickCounts {
+    /// Layers of bricks along the axis: those of the teeth, and of a shaft beyond them.
+    pub(crate) fn layers(&self) -> usize {
+        self.along + self.shaft.map_or(0, |shaft| shaft.ends[0] + shaft.ends[1])
+    }
+
+    /// Whether a layer has a brick in a cell: beyond the teeth there is only the shaft.
+    pub(crate) fn has(&self, layer: usize, cell: &Cell) -> bool {
+        let before = self.shaft.map_or(0, |shaft| shaft.ends[0]);
+        cell.shaft_row.is_some() || (before..before + self.along).contains(&layer)
+    }
+
     /// Bricks, and no fewer nodes than they have, of so many teeth.
     pub fn size(&self, body: &Body, order: BrickOrder, teeth: usize) -> [usize; 2] {
         let layout = Layout::new(body, self, order);
-        let sections = self.along * order.steps() + 1;
-        [layout.cells.len() * self.along * teeth, layout.nodes * sections * teeth]
+        let sections = self.layers() * order.steps() + 1;
+        let of_shaft = layout.cells.iter().filter(|cell| cell.shaft_row.is_some()).count();
+        let bricks = layout.cells.len() * self.along + of_shaft * (self.layers() - self.along);
+        [bricks * teeth, layout.nodes * sections * teeth]
     }
 
     pub(crate) fn stations(&self, body: &Body, order: BrickOrder) -> Stations {
         let steps = order.steps();
         let across = self.charts.iter().enumerate().map(|(k, count)| counts::even_shares(body, k, count * steps));
         let even: Vec<f64> = (0..=self.along).map(|k| k as f64 / self.along as f64).collect();
+        let shaft = self.shaft_of(body).zip(self.shaft);
+        let shaft = shaft.and_then(|(shaft, counts)| shaft.lattice(counts, self.along, steps));
+        let below = match &shaft {
+            Some(shaft) => {
+                let before = shaft.top[0].len() * steps;
+                (0..=self.along * steps).map(|k| shaft.places[before + k][0]).collect()
+            }
+            None => self.below(body, steps),
+        };
+        let along = refined(&even, steps);
+        Stations { across: across.collect(), along, below, shaft, layers: self.along }
+    }
+
+    /// Places on the rest of the outline below each section.
+    fn below(&self, body: &Body, steps: usize) -> Vec<[f64; 2]> {
         let segments = body.blank().outline.segments();
         let mut below: Vec<[f64; 2]> = Vec::new();
         for (segment, [from, to]) in body.blank().below_cells(self.along) {
@@ -322,6 +406,6 @@ impl BrickCounts {
                 below.push(segments[segment].at(to));
             }
         }
-        Stations { across: across.collect(), along: refined(&even, steps), below }
+        below
     }
 }

@@ -22,7 +22,7 @@ pub(crate) struct Sections<'b> {
     layout: &'b Layout,
     /// Lines across the space before it and the one behind it.
     lines: [Vec<Vec<Polar>>; 2],
-    below: Vec<[f64; 2]>,
+    stations: &'b Stations,
     band_share: f64,
     band: Vec<f64>,
     rim: Vec<f64>,
@@ -37,14 +37,14 @@ impl<'b> Sections<'b> {
         (body, tooth): (&'b Body, usize),
         layout: &'b Layout,
         counts: &BrickCounts,
-        stations: &Stations,
+        stations: &'b Stations,
     ) -> Sections<'b> {
         let lines = body.tooth_lines(tooth, &stations.across, &stations.along);
         let mut sections = Sections {
             body,
             layout,
             lines,
-            below: stations.below.clone(),
+            stations,
             band_share: counts.band_share(),
             band: counts.band_shares(layout.steps),
             rim: Vec::new(),
@@ -58,26 +58,29 @@ impl<'b> Sections<'b> {
         let top: Vec<Polar> = (0..=layout.width()).map(|column| places[layout.in_rim(0, column)]).collect();
         sections.around = mixed_shares(&top, body.arrangement);
         let [z, rho, _] = top[0];
-        let way = (z - sections.below[middle][0]).hypot(rho - sections.below[middle][1]);
+        let way = (z - stations.below[middle][0]).hypot(rho - stations.below[middle][1]);
         let whole: f64 = top.windows(2).map(|pair| body.arrangement.distance(pair[0], pair[1])).sum();
         let size = whole / layout.width() as f64 * layout.steps as f64;
         sections.rim = counts.rim_shares(size / way, layout.steps);
         sections
     }
 
-    /// The nodes of a section.
-    pub(crate) fn places(&self, section: usize) -> Vec<Polar> {
+    /// The nodes of a section, of those that [`Stations::sections`] counts; beyond the teeth those of the shaft alone.
+    pub(crate) fn places(&self, at: usize) -> Vec<Polar> {
         let mut places = vec![[0.0; 3]; self.layout.nodes];
-        self.place_bands(section, &mut places);
-        self.place_core(&mut places);
-        self.place_rim(section, &mut places);
-        smooth(&self.free, self.body.arrangement, &mut places);
-        self.bring_to_end(section, &mut places);
+        if let Some(section) = self.stations.of_teeth(at) {
+            self.place_bands(section, &mut places);
+            self.place_core(&mut places);
+            self.place_rim(section, &mut places);
+            smooth(&self.free, self.body.arrangement, &mut places);
+            self.bring_to_end(section, &mut places);
+        }
+        self.place_shaft(at, &mut places);
         places
     }
 
     fn place_bands(&self, section: usize, places: &mut [Polar]) {
-        let (layout, below) = (self.layout, self.below[section]);
+        let (layout, below) = (self.layout, self.stations.below[section]);
         let [line, next] = self.lines.each_ref().map(|lines| &lines[section]);
         let (last, arrangement) = (line.len() - 1, self.body.arrangement);
         let into = [line, next].map(|line| normals(line, below, arrangement));
@@ -115,7 +118,7 @@ impl<'b> Sections<'b> {
     }
 
     fn place_rim(&self, section: usize, places: &mut [Polar]) {
-        let (layout, below) = (self.layout, self.below[section]);
+        let (layout, below) = (self.layout, self.stations.below[section]);
         let [start, end] = self.lines.each_ref().map(|lines| lines[section][(lines[section].len() - 1) / 2][2]);
         for (column, around) in self.around.iter().enumerate() {
             let from = places[layout.in_rim(0, column)];
@@ -126,12 +129,24 @@ impl<'b> Sections<'b> {
         }
     }
 
+    /// Below the teeth and beyond them, at the angles of the nearest section across them.
+    fn place_shaft(&self, at: usize, places: &mut [Polar]) {
+        let Some(shaft) = &self.stations.shaft else { return };
+        let section = at.saturating_sub(self.stations.before()).min(self.stations.along.len() - 1);
+        let [start, end] = self.lines.each_ref().map(|lines| lines[section][(lines[section].len() - 1) / 2][2]);
+        for (row, [z, rho]) in shaft.places[at].iter().enumerate() {
+            for (column, around) in self.around.iter().enumerate() {
+                places[self.layout.in_rim(self.layout.rim + row, column)] = [*z, *rho, start + around * (end - start)];
+            }
+        }
+    }
+
     /// Of the first and the last section, where these lie on arcs of the outline.
     fn bring_to_end(&self, section: usize, places: &mut [Polar]) {
         let [begin, _, end] = self.body.blank().bounds();
         let segment: &OutlineSegment = match section {
             0 => begin,
-            last if last + 1 == self.below.len() => end,
+            last if last + 1 == self.stations.below.len() => end,
             _ => return,
         };
         if segment.center.is_some() {
