@@ -70,9 +70,9 @@ pub(crate) fn units() -> Vec<&'static str> {
     flank::vocabulary().units.to_vec()
 }
 
-/// Whether a unit is one of angles, and its size in mm or radians; none if there is no such unit.
+/// The powers of length and angle that a unit is a product of, and its size in mm and radians; none if there is no such unit.
 #[pyfunction]
-pub(crate) fn unit_size(name: &str) -> Option<(bool, f64)> {
-    let (size, dimension) = flank_chain_dsl::unit_size(name)?;
-    Some((dimension == Dimension::ANGLE, size))
+pub(crate) fn unit_size(name: &str) -> Option<(i32, i32, f64)> {
+    let (size, Dimension { length, angle }) = flank::product_size(name)?;
+    Some((length, angle, size))
 }

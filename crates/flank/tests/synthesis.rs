@@ -245,3 +245,36 @@ fn an_even_error_has_no_vertex() {
     let Err(Failure::Unsolved(told)) = found("face_gear_pair", wish, &[]) else { panic!("there is no vertex") };
     assert!(told.contains("is even as it is") && told.contains("crown a flank along the path"), "{told}");
 }
+
+/// Settings that do not make what is wanted are printed where that is asked for, and not written: a file that was there stays.
+#[test]
+fn what_is_not_met_is_not_written() {
+    let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/pairs");
+    let file = specs.join("not_met_wish.chain");
+    // two numbers and one setting; and one of each
+    for (wish, is_met) in [("lengthwise: 0.4, profilewise: 0.8", false), ("lengthwise: 0.4", true)] {
+        for dry in [true, false] {
+            let request = SynthesisRequest {
+                vary: vec!["p.ratio_of_roll".to_string()],
+                write: Some(file.clone()),
+                dry,
+                ..SynthesisRequest::new(wished(wish), "wish")
+            };
+            let found = synthesis(&request, &Unwatched);
+            let is_there = file.exists();
+            if is_there {
+                std::fs::remove_file(&file).expect("it was written");
+            }
+            let found = found.expect("a result");
+            assert_eq!(found.not_done.is_empty(), is_met, "{wish}: {:?}", found.not_done);
+            assert_eq!(
+                (is_there, found.files.len()),
+                if is_met && !dry { (true, 1) } else { (false, 0) },
+                "{wish} {dry}"
+            );
+            assert_eq!(found.corrected.is_some(), dry, "{wish}");
+            let told = found.not_done.iter().flat_map(|of| &of.details).filter(|of| of.contains("is not written"));
+            assert_eq!(told.count(), usize::from(!is_met && !dry), "{wish} {dry}");
+        }
+    }
+}

@@ -63,7 +63,11 @@ def _unit(name: str) -> tuple[str, float] | None:
     if name in ("", "%"):
         return ("share", 1e-2) if name else ("number", 1.0)
     found = _flank.unit_size(name)
-    return None if found is None else ("angle" if found[0] else "length", found[1])
+    if found is None:
+        return None
+    *powers, size = found
+    # a product of units by its powers of length and angle: 1/mm is "-1,0"
+    return {(1, 0): "length", (0, 1): "angle", (0, 0): "number"}.get(tuple(powers), "{},{}".format(*powers)), size
 
 
 def _parsed(value: Quantity, what: str, example: str) -> tuple[str, float]:
@@ -83,7 +87,8 @@ def _wrong(option: str, name: str, value: Quantity, *wanted: str) -> SpecError:
     unit = _LIKE[wanted[0]][0]
     example = f"{words} {unit}".strip() if is_ == "number" else {"mm": "0.1 mm", "deg": "2 arcmin"}.get(unit, "0.1")
     named = " or ".join(_LIKE[kind][1] for kind in wanted)
-    return of_dimension(option, (name, words), (named, _LIKE[is_][1]), example)
+    found = _LIKE[is_][1] if is_ in _LIKE else "a product of units"
+    return of_dimension(option, (name, words), (named, found), example)
 
 
 def length(value: Quantity | None, what: str) -> float | None:
@@ -135,7 +140,7 @@ def errors(values: Mapping[str, Quantity], what: str) -> list[Amount]:
     return all_of_them
 
 
-_REFUSED = re.compile(r"option `(\w+) (\S+)`: this (?:takes|axis takes|step is) (?:an? |one in )?(length|angle|mm|deg|rad|plain number)")
+_REFUSED = re.compile(r"option `(\w+) (\S+)`: this (?:takes|axis takes|step is) (?:an? |one in )?(length|angle|mm|deg|rad|plain number)(?![/*^])")
 _KINDS = {"mm": "length", "deg": "angle", "rad": "angle", "plain number": "number"}
 
 

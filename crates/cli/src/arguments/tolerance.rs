@@ -65,6 +65,7 @@ pub(super) fn above_zero(text: &str) -> Result<ToleratedAmount, String> {
     let (ToleratedAmount::Length(size)
     | ToleratedAmount::Angle(size)
     | ToleratedAmount::Number(size)
+    | ToleratedAmount::Product { size, .. }
     | ToleratedAmount::Share(size)) = amount;
     if size > 0.0 { Ok(amount) } else { Err("an amount is above zero".to_string()) }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Job, Request};
+use flank_chain_dsl::{Dimension, Job, Request};
 
 use crate::project::Project;
 use crate::project::choices::{
@@ -475,6 +475,13 @@ pub enum ToleratedAmount {
     Angle(f64),
     /// Of a plain number, or what has neither a length nor an angle as unit: in mm and radians.
     Number(f64),
+    /// Of a product of powers of lengths and angles, such as a curvature.
+    Product {
+        /// In mm and radians.
+        size: f64,
+        /// Neither a length, nor an angle, nor a number.
+        dimension: Dimension,
+    },
     /// A share of the value.
     Share(f64),
 }

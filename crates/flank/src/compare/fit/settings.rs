@@ -80,16 +80,12 @@ pub(in crate::compare) fn steps(
             return Err(Failure::Input(format!("option `round` names `{name}`, which does not vary")));
         };
         let dimension = settings[at].dimension;
-        let step = match amount {
-            ToleratedAmount::Length(mm) if dimension == Dimension::LENGTH => *mm,
-            ToleratedAmount::Angle(radians) if units::is_angle(dimension) => *radians,
-            ToleratedAmount::Number(number) if dimension != Dimension::LENGTH && !units::is_angle(dimension) => *number,
-            _ => {
-                let unit = units::whole_symbol(dimension);
-                let wanted = if unit.is_empty() { "a plain number".to_string() } else { format!("one in {unit}") };
-                return Err(Failure::Input(format!("option `round {name}`: this step is {wanted}")));
-            }
-        };
+        let step = Some(*amount).filter(|of| !matches!(of, ToleratedAmount::Share(_)));
+        let step = step.and_then(|of| of.inside(dimension, settings[at].value)).ok_or_else(|| {
+            let unit = units::whole_symbol(dimension);
+            let wanted = if unit.is_empty() { "a plain number".to_string() } else { format!("one in {unit}") };
+            Failure::Input(format!("option `round {name}`: this step is {wanted}"))
+        })?;
         if asked[at].replace(step).is_some() {
             return Err(Failure::Request(format!("option `round` names `{name}` twice: leave one of them out")));
         }
