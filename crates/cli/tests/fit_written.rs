@@ -54,7 +54,7 @@ fn a_curvature_is_read_with_its_unit() {
     ] {
         let study = format!("{out}/{name}");
         let count: &[&str] = if name == "scatter" { &["--count", "2"] } else { &[] };
-        let asked = ["sweep", spec, "--collect", "points:upper_flank", "--out", &study];
+        let asked = ["sweep", spec, "--collect", "points", "--out", &study];
         let run = flank(&[&asked[..], &cases, count].concat());
         assert_eq!(run.status.code(), Some(0), "{name}: {}", text(&run.stderr));
     }

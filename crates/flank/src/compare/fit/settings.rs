@@ -105,6 +105,28 @@ pub(in crate::compare) fn unknown(of: &Parameter<'_>, moved: f64) -> ScaledUnkno
     ScaledUnknown { start: of.value, scale, range: Range { low, high } }
 }
 
+/// Why a setting does nothing, where others of those that vary follow it: they change by themselves then. Empty where none does.
+pub(in crate::compare) fn beside(job: &Job<'_>, varied: &[&Parameter<'_>], of: &Parameter<'_>) -> String {
+    let known = job.parameters.iter().map(|of| flank_solver::Parameter {
+        variable: of.variable,
+        definition: of.definition,
+        value: of.value,
+    });
+    let followers = flank_solver::total_derivatives(&known.collect::<Vec<_>>()).unwrap_or_default();
+    let at = job.parameters.iter().position(|known| known.name == of.name);
+    let followers = at.and_then(|at| followers.into_iter().nth(at)).unwrap_or_default().into_iter();
+    let names: Vec<String> = followers
+        .map(|(at, _)| &job.parameters[at].name)
+        .filter(|name| **name != of.name && varied.iter().any(|varied| varied.name == **name))
+        .map(|name| format!("`{name}`"))
+        .collect();
+    match names.len() {
+        0 => String::new(),
+        1 => format!(" beside {}, which follows it and varies by itself", names[0]),
+        _ => format!(" beside {}, which follow it and vary by themselves", names.join(", ")),
+    }
+}
+
 /// A setting that stays as it is.
 pub(in crate::compare) fn held(of: ScaledUnknown) -> ScaledUnknown {
     ScaledUnknown { range: Range { low: of.start, high: of.start }, ..of }
