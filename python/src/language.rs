@@ -70,16 +70,9 @@ pub(crate) fn units() -> Vec<&'static str> {
     flank::vocabulary().units.to_vec()
 }
 
-/// What a unit measures, `length`, `angle`, `number`, or the unit itself if it is none of them, and its size in mm and radians; none if there is no
-/// such unit.
+/// The powers of length and angle that a unit is a product of, and its size in mm and radians; none if there is no such unit.
 #[pyfunction]
-pub(crate) fn unit_size(name: &str) -> Option<(&str, f64)> {
-    let (size, dimension) = flank::read_unit(name)?;
-    let kind = match dimension {
-        Dimension::LENGTH => "length",
-        Dimension::ANGLE => "angle",
-        Dimension::NUMBER => "number",
-        _ => name,
-    };
-    Some((kind, size))
+pub(crate) fn unit_size(name: &str) -> Option<(i32, i32, f64)> {
+    let (size, Dimension { length, angle }) = flank::product_size(name)?;
+    Some((length, angle, size))
 }

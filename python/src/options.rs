@@ -3,6 +3,7 @@
 use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 
+use flank_chain_dsl::Dimension;
 use flank::{EvaluatorOptions, MountingError, ToleratedAmount, UnknownChoice};
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
@@ -79,7 +80,8 @@ impl<'py> Options<'_, 'py> {
         Ok(evaluator)
     }
 
-    /// Names with amounts of a kind: lengths in mm, angles in radians, numbers, shares, or a unit: then in mm and radians.
+    /// Names with amounts of a kind: lengths in mm, angles in radians, numbers, shares, and products by their powers of length and angle,
+    /// `-1,0`, in mm and radians.
     pub(crate) fn amounts(self, name: &str) -> PyResult<Vec<(String, ToleratedAmount)>> {
         let given: Vec<(String, String, f64)> = self.or(name, Vec::new())?;
         let amount = |(of, kind, size): (String, String, f64)| {
@@ -87,8 +89,8 @@ impl<'py> Options<'_, 'py> {
                 "length" => ToleratedAmount::Length(size),
                 "angle" => ToleratedAmount::Angle(size),
                 "share" => ToleratedAmount::Share(size),
-                unit => flank::read_unit(unit)
-                    .map_or(ToleratedAmount::Number(size), |(_, dimension)| ToleratedAmount::Of(size, dimension)),
+                "number" => ToleratedAmount::Number(size),
+                powers => ToleratedAmount::of(size, dimension_of(powers)),
             };
             (of, amount)
         };
@@ -103,4 +105,11 @@ impl<'py> Options<'_, 'py> {
         };
         Ok(given.into_iter().map(error).collect())
     }
+}
+
+/// Of the powers of length and angle.
+fn dimension_of(powers: &str) -> Dimension {
+    let power = |text: &str| text.parse().unwrap_or(0);
+    let (length, angle) = powers.split_once(',').unwrap_or((powers, "0"));
+    Dimension { length: power(length), angle: power(angle) }
 }

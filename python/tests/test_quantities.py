@@ -25,6 +25,9 @@ def test_units_are_those_of_the_language(job):
     sizes = {unit: _parsed(f"1 {unit}", "x", "") for unit in units}
     assert sizes["inch"] == ("length", 25.4) and sizes["cm"] == ("length", 10.0) and sizes["um"] == ("length", 1e-3)
     assert sizes["rev"][0] == "angle" and sizes["rev"][1] == pytest.approx(6.283185307179586)
+    # products by their powers of length and angle, as results show them and as the language writes them
+    assert _parsed("2/mm", "x", "") == _parsed("2 1/mm", "x", "") == _parsed("2 mm^-1", "x", "") == ("-1,0", 2.0)
+    assert _parsed("2 mm/rad", "x", "") == ("1,-1", 2.0) and _parsed("2 mm*rad", "x", "") == ("1,1", 2.0)
     # the Greek letter is read alike
     assert _parsed("1 μm", "x", "") == ("length", 1e-3)
 

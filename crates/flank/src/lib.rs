@@ -99,7 +99,7 @@ pub use exchange::templates::{
     FromLibrary, Template, TemplateList, TemplateParameter, Together, new_job, template_parameters, templates,
 };
 pub use flank_chain_dsl::syntax::{Vocabulary, is_reserved, vocabulary};
-pub use flank_chain_dsl::{Buffers, Code, Disk, Files, FolderEntry, NameKind, ValueSource, WordKind};
+pub use flank_chain_dsl::{Buffers, Code, Dimension, Disk, Files, FolderEntry, NameKind, ValueSource, WordKind};
 pub use language::check::{CheckResult, Checked, check, check_with_names};
 pub use language::derive::derive;
 pub use language::derive::result::{
@@ -119,7 +119,7 @@ pub use language::layout::{Layout, lay_out};
 pub use language::schemas::{Schema, schema_of, schemas};
 pub use page::result::ViewResult;
 pub use page::{PageParts, page_parts, view, waiting_page};
-pub use project::amount::{AmountFault, read_amount, read_unit};
+pub use project::amount::{AmountFault, product_size, read_amount};
 pub use project::answer::{Answer, Timed, Timing};
 pub use project::choices::{
     BrickFormat, Choice, CutterFormat, ElementOrder, EmitForm, FunctionLanguage, MeshFormat, NcDialect, PictureFormat,

@@ -245,3 +245,79 @@ fn an_even_error_has_no_vertex() {
     let Err(Failure::Unsolved(told)) = found("face_gear_pair", wish, &[]) else { panic!("there is no vertex") };
     assert!(told.contains("is even as it is") && told.contains("crown a flank along the path"), "{told}");
 }
+
+/// Settings that do not make what is wanted are printed where that is asked for, and not written.
+#[test]
+fn what_is_not_met_is_not_written() {
+    let specs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/pairs");
+    let file = specs.join("not_written.chain");
+    let asked = |vary: &[&str], dry: bool| {
+        let jobs = JobSelection {
+            project: Project::open(specs.join("bevel_19x62.chain"), Arc::new(Disk)),
+            job: Some("bevel_19x62".to_string()),
+            set: vec![],
+        };
+        let vary = vary.iter().map(|name| name.to_string()).collect();
+        let request =
+            SynthesisRequest { vary, write: Some(file.clone()), dry, ..SynthesisRequest::new(jobs, "centred") };
+        synthesis(&request, &Unwatched).expect("a result")
+    };
+    let is_told = |found: &SynthesisResult| {
+        let mut details = found.not_done.iter().flat_map(|of| &of.details);
+        details.any(|line| line.contains("not_written.chain` is not written"))
+    };
+    // five numbers and one setting
+    let refused = asked(&["p.ratio_of_roll"], false);
+    assert!(!file.exists() && refused.files.is_empty() && refused.corrected.is_none(), "{:?}", refused.files);
+    assert!(
+        refused.not_done.iter().any(|of| of.kind == NotDoneKind::NotMet) && is_told(&refused),
+        "{:?}",
+        refused.not_done
+    );
+    let printed = asked(&["p.ratio_of_roll"], true);
+    assert!(printed.corrected.is_some_and(|text| text.contains("ratio_of_roll")), "{:?}", printed.not_done);
+    assert!(!file.exists());
+    let met = asked(&SETTINGS.map(|(name, ..)| name), true);
+    assert!(met.not_done.is_empty() && met.corrected.is_some(), "{:?}", met.not_done);
+}
+
+/// Of two settings that meet one wish the changes are the least by their scales, 0.1 mm and a hundredth: with the one a little farther or nearer, and
+/// the other looked for anew, they are greater.
+#[test]
+fn of_all_that_meets_a_wish_settings_change_least() {
+    let (wish, now) = ("lengthwise: 0.42", [99.808, 3.4108]);
+    let scales = [0.1, 1e-2 * now[1]];
+    let size = |of: [f64; 2]| [0, 1].map(|k| ((of[k] - now[k]) / scales[k]).powi(2)).iter().sum::<f64>();
+    let new = |found: &SynthesisResult, name: &str| {
+        assert!(found.not_done.is_empty(), "{:?}", found.not_done);
+        found.settings.iter().find(|of| of.name == name).expect("it varies").new
+    };
+    let (radial, ratio) = ("p.radial_distance", "p.ratio_of_roll");
+    let both = solved(wish, &[radial, ratio]).expect("a result");
+    let least = [new(&both, radial), new(&both, ratio)];
+    let beside = |by: f64| {
+        let held = least[0] + by;
+        let jobs = JobSelection { set: vec![(radial.to_string(), format!("{held:?} mm"))], ..wished(wish) };
+        let request = SynthesisRequest { vary: vec![ratio.to_string()], ..SynthesisRequest::new(jobs, "wish") };
+        [held, new(&synthesis(&request, &Unwatched).expect("a result"), ratio)]
+    };
+    let step = 0.1 * (least[0] - now[0]).abs().max(1e-3);
+    let [before, after] = [-step, step].map(|by| size(beside(by)));
+    assert!(size(least) < before && size(least) < after, "{before} {} {after}", size(least));
+    // the slope there is zero: what is left over the step is the third derivative's, a small share of what the sum of squares bends by
+    let [slope, bend] = [0.5 * (after - before), before + after - 2.0 * size(least)];
+    assert!(slope.abs() < 0.05 * bend, "{slope} {bend}");
+}
+
+/// A setting that another one follows does what it does through that, and nothing where that one varies by itself: the reason is told.
+#[test]
+fn what_is_followed_by_what_varies_is_told() {
+    let told = |vary: &[&str]| format!("{:?}", solved("lengthwise: 0.36", vary).expect("a result").remarks);
+    let both = told(&["shift", "p.radial_distance"]);
+    let why =
+        "`shift` changes nothing that wish wants beside `p.radial_distance`, which follows it and varies by itself";
+    assert!(both.contains(why), "{both}");
+    let other = told(&["p.radial_distance", "pinion_cutter.inside_point_radius"]);
+    assert!(other.contains("changes nothing that wish wants: it stays"), "{other}");
+    assert!(!told(&["shift"]).contains("changes nothing"));
+}

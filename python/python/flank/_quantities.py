@@ -62,7 +62,12 @@ def _unit(name: str) -> tuple[str, float] | None:
     """What a unit is one of, itself where that has no name, and its size in mm, radians or 1; `None` if the language has no such unit."""
     if name in ("", "%"):
         return ("share", 1e-2) if name else ("number", 1.0)
-    return _flank.unit_size(name)
+    found = _flank.unit_size(name)
+    if found is None:
+        return None
+    *powers, size = found
+    # a product of units by its powers of length and angle: 1/mm is "-1,0"
+    return {(1, 0): "length", (0, 1): "angle", (0, 0): "number"}.get(tuple(powers), "{},{}".format(*powers)), size
 
 
 def _parsed(value: Quantity, what: str, example: str) -> tuple[str, float]:
@@ -82,7 +87,8 @@ def _wrong(option: str, name: str, value: Quantity, *wanted: str) -> SpecError:
     unit = _LIKE[wanted[0]][0]
     example = f"{words} {unit}".strip() if is_ == "number" else {"mm": "0.1 mm", "deg": "2 arcmin"}.get(unit, "0.1")
     named = " or ".join(_LIKE[kind][1] for kind in wanted)
-    return of_dimension(option, (name, words), (named, _LIKE[is_][1] if is_ in _LIKE else f"a value in {is_}"), example)
+    found = _LIKE[is_][1] if is_ in _LIKE else "a product of units"
+    return of_dimension(option, (name, words), (named, found), example)
 
 
 def length(value: Quantity | None, what: str) -> float | None:
@@ -134,7 +140,7 @@ def errors(values: Mapping[str, Quantity], what: str) -> list[Amount]:
     return all_of_them
 
 
-_REFUSED = re.compile(r"option `(\w+) (\S+)`: this (?:takes|axis takes|step is) (?:an? |one in )?(length|angle|mm|deg|rad|plain number)")
+_REFUSED = re.compile(r"option `(\w+) (\S+)`: this (?:takes|axis takes|step is) (?:an? |one in )?(length|angle|mm|deg|rad|plain number)(?![/*^])")
 _KINDS = {"mm": "length", "deg": "angle", "rad": "angle", "plain number": "number"}
 
 

@@ -246,6 +246,12 @@ fn varied(text: &str) -> Result<VariedRange, String> {
 pub(super) fn spaced(text: &str) -> String {
     let unit = text.find(|c: char| c.is_alphabetic() && c != 'e' && c != 'E').unwrap_or(text.len());
     let (number, unit) = text.split_at(unit);
+    // a product that begins with a stroke is shown so, and the language has a power for it
+    if let Ok(amount) = flank::read_amount(text)
+        && number.trim_end().ends_with('/')
+    {
+        return amount.to_string();
+    }
     format!("{} {}", number.trim(), unit.trim()).trim().to_string()
 }
 

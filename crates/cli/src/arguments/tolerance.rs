@@ -62,7 +62,12 @@ pub(super) fn amount(text: &str) -> Result<(String, ToleratedAmount), String> {
 /// An amount that something scatters by.
 pub(super) fn above_zero(text: &str) -> Result<ToleratedAmount, String> {
     let amount = flank::read_amount(text).map_err(|fault| fault.to_string())?;
-    if amount.size() > 0.0 { Ok(amount) } else { Err("an amount is above zero".to_string()) }
+    let (ToleratedAmount::Length(size)
+    | ToleratedAmount::Angle(size)
+    | ToleratedAmount::Number(size)
+    | ToleratedAmount::Product { size, .. }
+    | ToleratedAmount::Share(size)) = amount;
+    if size > 0.0 { Ok(amount) } else { Err("an amount is above zero".to_string()) }
 }
 
 fn correlation(text: &str) -> Result<([String; 2], f64), String> {

@@ -476,8 +476,13 @@ pub enum ToleratedAmount {
     Angle(f64),
     /// Of a plain number, or what has neither a length nor an angle as unit: in mm and radians.
     Number(f64),
-    /// Of what is neither of them, with its unit: in mm and radians.
-    Of(f64, Dimension),
+    /// Of a product of powers of lengths and angles, such as a curvature.
+    Product {
+        /// In mm and radians.
+        size: f64,
+        /// Neither a length, nor an angle, nor a number.
+        dimension: Dimension,
+    },
     /// A share of the value.
     Share(f64),
 }

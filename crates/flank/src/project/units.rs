@@ -39,6 +39,20 @@ pub(crate) fn whole_symbol(dimension: Dimension) -> String {
     }
 }
 
+/// A dimension in mm and radians as the language has units behind a number: `mm`, `mm^-1`, `mm/rad`; empty for a number.
+pub(crate) fn of_language(dimension: Dimension) -> String {
+    let power = |unit: &str, exponent: i32| match exponent {
+        1 => unit.to_string(),
+        _ => format!("{unit}^{exponent}"),
+    };
+    match (dimension.length, dimension.angle) {
+        (0, 0) => String::new(),
+        (0, angle) => power("rad", angle),
+        (length, 0) => power("mm", length),
+        (length, angle) => format!("{}/{}", power("mm", length), power("rad", -angle)),
+    }
+}
+
 /// A value in that unit.
 pub(crate) fn shown(dimension: Dimension, value: f64) -> f64 {
     if is_angle(dimension) { value.to_degrees() } else { value }

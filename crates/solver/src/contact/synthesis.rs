@@ -224,7 +224,7 @@ impl ContactSynthesis<'_> {
     pub fn solve(&self) -> Option<SynthesizedContact> {
         let within = self.walked()?;
         if within.is_met() {
-            return Some(within);
+            return Some(self.least_changed(within));
         }
         let problem = self.problem.clone().beyond_ranges();
         let ContactSynthesis { vertex, wishes, settings, .. } = self.clone();
@@ -235,13 +235,50 @@ impl ContactSynthesis<'_> {
         };
         match beyond {
             Some(beyond) if beyond.is_met() => {
-                Some(SynthesizedContact { vertex: told(beyond.vertex.clone()), ..beyond })
+                let least = ContactSynthesis { problem: &problem, ..self.clone() }.least_changed(beyond);
+                Some(SynthesizedContact { vertex: told(least.vertex.clone()), ..least })
             }
             beyond => {
                 let beyond = beyond.and_then(|of| of.way).map(|(share, at)| (share, told(at)));
                 let ways = within.way.clone().into_iter().chain(beyond);
                 Some(SynthesizedContact { way: ways.max_by(|a, b| a.0.total_cmp(&b.0)), ..within })
             }
+        }
+    }
+
+    /// Where more settings than wishes are free, of all that meet the wishes the ones that are changed least, by their scales. A search for the wishes
+    /// alone leaves settings where its steps led.
+    fn least_changed(&self, found: SynthesizedContact) -> SynthesizedContact {
+        let free = self.settings.iter().filter(|of| of.range.low < of.range.high).count();
+        if free <= self.wishes.len() || self.wishes.iter().any(|wish| wish.within.is_some()) {
+            return found;
+        }
+        let changed = |values: &[f64]| -> Vec<f64> {
+            self.settings.iter().zip(values).map(|(of, value)| (value - of.start) / of.scale).collect()
+        };
+        let count = self.settings.len();
+        let from = self.from(&found, self.wishes.clone());
+        let nearer = from.search(self.wishes.len() + 1, |values, of| Linearized {
+            residuals: changed(values).into_iter().chain(of.residuals).collect(),
+            jacobian: Mat::from_fn(count + of.jacobian.nrows(), of.jacobian.ncols(), |row, k| match row {
+                own if own < count => {
+                    if own == k {
+                        self.settings[k].scale.recip()
+                    } else {
+                        0.0
+                    }
+                }
+                _ => of.jacobian[(row - count, k)],
+            }),
+        });
+        let Some((fit, vertex)) = nearer else { return found };
+        let near = SynthesizedContact { fit, vertex, ..found.clone() };
+        // once more for the wishes alone: the least change is known to fewer digits than they are
+        let ended = self.from(&near, self.wishes.clone()).solve_at_once().filter(SynthesizedContact::is_met);
+        let size = |of: &SynthesizedContact| changed(&of.fit.values).iter().map(|x| x * x).sum::<f64>();
+        match ended {
+            Some(ended) if size(&ended) < size(&found) => SynthesizedContact { way: found.way, ..ended },
+            _ => found,
         }
     }
 
@@ -316,7 +353,7 @@ impl ContactSynthesis<'_> {
         let (exact, soft): (Vec<usize>, Vec<usize>) =
             (0..=self.wishes.len()).filter(|k| *k != wish).partition(is_exact);
         let order = [&[wish][..], &soft, &exact].concat();
-        let (fit, vertex) = self.search(exact.len(), |of: Linearized| Linearized {
+        let (fit, vertex) = self.search(exact.len(), |_, of: Linearized| Linearized {
             residuals: order.iter().map(|row| of.residuals[*row]).collect(),
             jacobian: Mat::from_fn(order.len(), of.jacobian.ncols(), |row, k| of.jacobian[(order[row], k)]),
         })?;
@@ -333,15 +370,15 @@ impl ContactSynthesis<'_> {
     /// If there are not as many settings as the pair has parameters.
     #[must_use]
     pub fn solve_at_once(&self) -> Option<SynthesizedContact> {
-        let (fit, vertex) = self.search(0, |linearized| linearized)?;
+        let (fit, vertex) = self.search(0, |_, linearized| linearized)?;
         Some(SynthesizedContact { fit, vertex, share: 1.0, way: None })
     }
 
-    /// With so many residuals, the last ones as they are ordered, that are to be zero.
+    /// With so many residuals, the last ones as they are ordered for the values of settings and roll, that are to be zero.
     fn search(
         &self,
         exact: usize,
-        ordered: impl Fn(Linearized) -> Linearized,
+        ordered: impl Fn(&[f64], Linearized) -> Linearized,
     ) -> Option<(LeastSquaresFit, ContactPoint)> {
         let unknowns = self.settings.iter().copied().chain([self.roll()]).collect();
         let problem =
@@ -352,7 +389,7 @@ impl ContactSynthesis<'_> {
             let near = tried.last().map_or(self.vertex, |(_, at)| at);
             let (at, linearized) = self.linearized(near, values)?;
             tried.push((values.to_vec(), at));
-            Some(ordered(linearized))
+            Some(ordered(values, linearized))
         })?;
         let (_, vertex) = tried.into_iter().rev().find(|(values, _)| *values == fit.values)?;
         Some((fit, vertex))

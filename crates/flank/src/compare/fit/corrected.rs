@@ -73,12 +73,7 @@ pub(in crate::compare) fn value(dimension: Dimension, value: f64) -> String {
     if [Dimension::LENGTH, Dimension::ANGLE, Dimension::NUMBER].contains(&dimension) {
         return units::as_given(dimension, value);
     }
-    let unit = units::inside(dimension);
-    // a unit that begins with a stroke is none of the language
-    match unit.strip_prefix("1/") {
-        Some(below) => format!("{value} / (1 {below})"),
-        None => format!("{value} {unit}"),
-    }
+    format!("{value} {}", units::of_language(dimension))
 }
 
 /// Writes it, whole or not at all.

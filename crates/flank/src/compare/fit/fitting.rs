@@ -13,7 +13,7 @@ use super::result::{
     RangeBound, SettingChange, SettingsChoice, SettingsDirection,
 };
 use super::words::{self, SHARE, Unknown, What, motion_name};
-use super::{corrected, keep};
+use super::{corrected, keep, settings};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::remark::{Remark, RemarkKind};
@@ -197,7 +197,11 @@ impl<'a, 'g> Fitting<'a, 'g> {
             Remark::new(
                 RemarkKind::MovesNothing,
                 &of.name,
-                format!("`{}` does not move {surface}: it stays as it is", of.name),
+                format!(
+                    "`{}` does not move {surface}{}: it stays as it is",
+                    of.name,
+                    settings::beside(self.aims[0].of.job, &self.problem.settings, of)
+                ),
             )
         };
         idle.map(|(of, _)| remark(of)).collect()

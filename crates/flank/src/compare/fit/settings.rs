@@ -80,7 +80,8 @@ pub(in crate::compare) fn steps(
             return Err(Failure::Input(format!("option `round` names `{name}`, which does not vary")));
         };
         let dimension = settings[at].dimension;
-        let step = amount.in_unit(dimension).ok_or_else(|| {
+        let step = Some(*amount).filter(|of| !matches!(of, ToleratedAmount::Share(_)));
+        let step = step.and_then(|of| of.inside(dimension, settings[at].value)).ok_or_else(|| {
             let unit = units::whole_symbol(dimension);
             let wanted = if unit.is_empty() { "a plain number".to_string() } else { format!("one in {unit}") };
             Failure::Input(format!("option `round {name}`: this step is {wanted}"))
@@ -102,6 +103,28 @@ pub(in crate::compare) fn unknown(of: &Parameter<'_>, moved: f64) -> ScaledUnkno
     let of_range = if is_number && (high - low).is_finite() { (SHARE * (high - low)).min(SHOWS / moved) } else { 0.0 };
     let scale = if usual * moved < HARDLY { usual.max(share).max(of_range) } else { usual };
     ScaledUnknown { start: of.value, scale, range: Range { low, high } }
+}
+
+/// Why a setting does nothing, where others of those that vary follow it: they change by themselves then. Empty where none does.
+pub(in crate::compare) fn beside(job: &Job<'_>, varied: &[&Parameter<'_>], of: &Parameter<'_>) -> String {
+    let known = job.parameters.iter().map(|of| flank_solver::Parameter {
+        variable: of.variable,
+        definition: of.definition,
+        value: of.value,
+    });
+    let followers = flank_solver::total_derivatives(&known.collect::<Vec<_>>()).unwrap_or_default();
+    let at = job.parameters.iter().position(|known| known.name == of.name);
+    let followers = at.and_then(|at| followers.into_iter().nth(at)).unwrap_or_default().into_iter();
+    let names: Vec<String> = followers
+        .map(|(at, _)| &job.parameters[at].name)
+        .filter(|name| **name != of.name && varied.iter().any(|varied| varied.name == **name))
+        .map(|name| format!("`{name}`"))
+        .collect();
+    match names.len() {
+        0 => String::new(),
+        1 => format!(" beside {}, which follows it and varies by itself", names[0]),
+        _ => format!(" beside {}, which follow it and vary by themselves", names.join(", ")),
+    }
 }
 
 /// A setting that stays as it is.

@@ -7,8 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::request::Distribution;
+use crate::project::amount::product_size;
 use crate::project::failure::Failure;
-use crate::project::requests::{MountingError, ToleratedAmount};
+use crate::project::requests::MountingError;
 use crate::project::units;
 
 /// Something that has another value in each case.
@@ -89,36 +90,12 @@ impl KnownInput {
     /// If its amount is of another kind.
     pub(super) fn amount(&self, of: Distribution) -> Result<f64, Failure> {
         let (Distribution::Normal(amount) | Distribution::Uniform(amount)) = of;
-        let inside = match amount {
-            ToleratedAmount::Share(share) => (self.value != 0.0).then_some(share * self.value.abs()),
-            amount => amount.in_unit(self.dimension),
-        };
         let name = &self.input.name;
         if self.is_count {
             return Err(Failure::Input(format!("option `scatter {name}`: a count does not scatter; vary it")));
         }
-        let is_zero = matches!(amount, ToleratedAmount::Share(_)) && self.value == 0.0;
-        let inside = inside.filter(|inside| inside.is_finite() && *inside > 0.0).ok_or_else(|| {
-            Failure::Input(match self.dimension {
-                _ if is_zero => format!(
-                    "option `scatter {name}`: a share of a value that is zero is nothing: say how much, with a unit"
-                ),
-                Dimension::LENGTH => {
-                    format!("option `scatter {name}`: this takes a length above zero, for example 0.01mm")
-                }
-                Dimension::ANGLE => {
-                    format!("option `scatter {name}`: this takes an angle above zero, for example 1arcmin")
-                }
-                Dimension::NUMBER => format!(
-                    "option `scatter {name}`: this takes a plain number above zero, or a share, for example 0.1%"
-                ),
-                of => {
-                    let unit = units::inside(of);
-                    format!("option `scatter {name}`: this takes an amount in {unit} above zero, or a share, for example 0.1%")
-                }
-            })
-        })?;
-        Ok(inside / self.size())
+        let refused = || Failure::Input(amount.refused("scatter", name, (self.dimension, self.value)));
+        Ok(amount.inside(self.dimension, self.value).ok_or_else(refused)? / self.size())
     }
 
     /// Why a value cannot be one of this, if so; in its unit.
@@ -212,9 +189,10 @@ fn quoted<'n>(names: impl Iterator<Item = &'n String>) -> String {
 
 /// A value with its unit, the shortest that is the same number.
 pub(super) fn text(value: f64, unit: &str) -> String {
-    match unit.strip_prefix("1/") {
-        Some(below) => format!("{value} / (1 {below})"),
-        None => format!("{value} {unit}").trim_end().to_string(),
+    match product_size(unit) {
+        // in mm and radians, as no other products are shown
+        Some((_, dimension)) if size_of_unit(unit).is_none() => format!("{value} {}", units::of_language(dimension)),
+        _ => format!("{value} {unit}").trim_end().to_string(),
     }
 }
 

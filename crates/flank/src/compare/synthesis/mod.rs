@@ -85,15 +85,10 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
     verdict::judge(&mut result, (&members, &conditions), (&problem, &found), checked.as_ref());
     if let Some(file) = request.write.as_ref().filter(|_| !values.is_empty()) {
         let text = corrected::text(&request.jobs, (job, &values), file, &origin)?;
-        match request.dry {
-            true => result.corrected = Some(text),
-            false => match result.not_done.iter_mut().find(|of| of.kind == NotDoneKind::NotMet) {
-                Some(unmet) => unmet.details.push(format!(
-                    "{}: not written, as it is not what is wanted; option `dry` tells what it would hold",
-                    shown_path(file)
-                )),
-                None => result.files.push(corrected::write(file, &text, &origin)?),
-            },
+        match (request.dry, result.not_done.first_mut()) {
+            (true, _) => result.corrected = Some(text),
+            (false, Some(unmet)) => unmet.details.push(verdict::unwritten(file)),
+            (false, None) => result.files.push(corrected::write(file, &text, &origin)?),
         }
     }
     result.not_done = origin.located(&[job], result.not_done);

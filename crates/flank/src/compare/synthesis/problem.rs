@@ -9,7 +9,7 @@ use flank_solver::{
 
 use super::Condition;
 use crate::compare::fit::corrected;
-use crate::compare::fit::settings::{held, open, steps, unknown};
+use crate::compare::fit::settings::{beside, held, open, steps, unknown};
 use crate::contact::pair::Members;
 use crate::project::failure::Failure;
 use crate::project::remark::{Remark, RemarkKind};
@@ -30,8 +30,8 @@ pub(super) struct Problem<'p, 'g> {
     pub(super) chosen_of: Option<usize>,
     /// Those that change the contact and were not chosen.
     pub(super) left: Vec<String>,
-    /// Those that were named and change nothing.
-    idle: Vec<String>,
+    /// Those that were named and change nothing, with why, where others that vary follow them.
+    idle: Vec<(String, String)>,
     unknowns: Vec<ScaledUnknown>,
     pair: ContactProblem,
     vertex: &'p ContactPoint,
@@ -79,7 +79,7 @@ impl<'p, 'g> Problem<'p, 'g> {
         let is_left = |k: &&usize| !taken.contains(k);
         let left = moving.iter().filter(is_left).map(|k| settings[*k].name.clone()).collect();
         let idle = (0..settings.len()).filter(|k| is_named && !moving.contains(k));
-        let idle = idle.map(|k| settings[k].name.clone()).collect();
+        let idle = idle.map(|k| (settings[k].name.clone(), beside(job, &settings, settings[k]))).collect();
         let settings: Vec<&Parameter<'g>> = taken.iter().map(|k| settings[*k]).collect();
         // what one mm, radian or 1 of a setting changes says by which scale it counts
         let scale = |(k, of): (&usize, &&Parameter<'g>)| unknown(of, size(&effects[*k]) / whole.settings[*k].scale);
@@ -99,8 +99,10 @@ impl<'p, 'g> Problem<'p, 'g> {
 
     /// Settings that were named and do nothing.
     pub(super) fn idle(&self, request: &SynthesisRequest) -> Vec<Remark> {
-        let message = |name: &String| format!("`{name}` changes nothing that {} wants: it stays", request.want);
-        let remark = |name: &String| Remark::new(RemarkKind::MovesNothing, name, message(name));
+        let remark = |(name, beside): &(String, String)| {
+            let message = format!("`{name}` changes nothing that {} wants{beside}: it stays", request.want);
+            Remark::new(RemarkKind::MovesNothing, name, message)
+        };
         self.idle.iter().map(remark).collect()
     }
 

@@ -1,5 +1,7 @@
 //! Whether a contact is what was wanted, and what speaks against it.
 
+use std::path::Path;
+
 use flank_solver::{ContactPoint, ContactState, Outcome, SearchEnd, SynthesizedContact, opposed};
 
 use super::conditions::{beyond, off_the_tooth};
@@ -7,6 +9,7 @@ use super::result::SynthesisResult;
 use super::{Checked, Condition, Problem};
 use crate::contact::pair::Members;
 use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::shown_path;
 
 /// A combination of conditions that settings change by less than this share of what they change others by, they do not change.
 const UNMOVED: f64 = 1e-9;
@@ -64,6 +67,14 @@ pub(super) fn is_met(members: &Members<'_, '_>, conditions: &[Condition], at: &C
 /// Whether no settings can make it, however many.
 pub(super) fn is_hopeless(members: &Members<'_, '_>, conditions: &[Condition]) -> bool {
     off_the_tooth(members, conditions).is_some()
+}
+
+/// Why a spec is not written: its settings do not make what is wanted.
+pub(super) fn unwritten(file: &Path) -> String {
+    format!(
+        "spec: `{}` is not written, since these settings do not make it; option `dry` prints it all the same",
+        shown_path(file)
+    )
 }
 
 /// Which settings were not tried.

@@ -4,7 +4,7 @@ use flank_chain_dsl::{Contact, Dimension, Job, Parameter, ValueSource};
 
 use crate::compare::fit::settings::find;
 use crate::project::failure::Failure;
-use crate::project::requests::{ToleranceRequest, ToleratedAmount};
+use crate::project::requests::ToleranceRequest;
 use crate::project::units;
 use crate::solve::sensitivity::usual_change;
 
@@ -59,8 +59,9 @@ pub(super) fn causes(job: &Job<'_>, contacts: &[usize], request: &ToleranceReque
         if causes.iter().any(|known| known.at == cause.at) {
             return Err(Failure::Request(format!("option `scatter` names `{name}` twice: leave one of them out")));
         }
-        let scatter = in_unit(*amount, cause.dimension, cause.value)
-            .ok_or_else(|| Failure::Input(refused("scatter", name, *amount, (cause.dimension, cause.value))))?;
+        let scatter = amount
+            .inside(cause.dimension, cause.value)
+            .ok_or_else(|| Failure::Input(amount.refused("scatter", name, (cause.dimension, cause.value))))?;
         causes.push(Cause { scatter, ..cause });
     }
     causes.sort_by_key(|cause| cause.at);
@@ -113,34 +114,4 @@ fn usual(job: &Job<'_>, contacts: &[usize]) -> Vec<Cause> {
         }
     }
     causes
-}
-
-/// An amount in mm, radians or 1; `None` if it is of another kind than the dimension.
-pub(super) fn in_unit(amount: ToleratedAmount, dimension: Dimension, value: f64) -> Option<f64> {
-    let found = match amount {
-        ToleratedAmount::Share(share) => share * value.abs(),
-        amount => amount.in_unit(dimension)?,
-    };
-    (found.is_finite() && found > 0.0).then_some(found)
-}
-
-/// Why an amount is none of a setting or a result.
-pub(super) fn refused(
-    option: &str,
-    name: &str,
-    amount: ToleratedAmount,
-    (dimension, value): (Dimension, f64),
-) -> String {
-    if matches!(amount, ToleratedAmount::Share(_)) && value == 0.0 {
-        return format!(
-            "option `{option} {name}`: a share of a value that is zero is nothing: say how much, with a unit"
-        );
-    }
-    let wanted = match dimension {
-        Dimension::LENGTH => "a length above zero, for example 0.01mm".to_string(),
-        Dimension::ANGLE => "an angle above zero, for example 1arcmin".to_string(),
-        Dimension::NUMBER => "a plain number above zero, or a share of its value, for example 0.1%".to_string(),
-        of => format!("an amount in {} above zero, or a share of its value, for example 0.1%", units::inside(of)),
-    };
-    format!("option `{option} {name}`: this takes {wanted}")
 }

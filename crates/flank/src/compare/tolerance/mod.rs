@@ -14,7 +14,7 @@ use flank_chain_dsl::{Dimension, Job, Parameter};
 use flank_expr::Graph;
 use flank_solver::Scatter;
 
-use self::causes::{Cause, CausePlace, causes, in_unit, refused};
+use self::causes::{Cause, CausePlace, causes};
 use self::ease_off::Flank;
 use self::mating::Mating;
 use self::quantity::Quantity;
@@ -216,8 +216,9 @@ fn wanted(quantities: &[Quantity], request: &ToleranceRequest) -> Result<Vec<Opt
             return Err(Failure::Input(format!("there is no result `{name}`; there is: {}", known.join(", "))));
         };
         let dimension = if quantities[at].unit == "urad" { Dimension::ANGLE } else { Dimension::LENGTH };
-        let value = in_unit(*amount, dimension, 0.0)
-            .ok_or_else(|| Failure::Input(refused("budget", name, *amount, (dimension, 1.0))))?;
+        let value = amount
+            .inside(dimension, 0.0)
+            .ok_or_else(|| Failure::Input(amount.refused("budget", name, (dimension, 1.0))))?;
         if all[at].replace(value).is_some() {
             return Err(Failure::Request(format!("option `budget` names `{name}` twice: leave one of them out")));
         }
