@@ -15,10 +15,10 @@ Quantity = Any
 """A text with a unit, a pair of number and unit, a quantity of pint, or a number."""
 
 Amount = tuple[str, str, float]
-"""A name, the kind of an amount or its unit, and its size: mm, radians, a number or a share."""
+"""A name, the kind of an amount, and its size: mm, radians, a number or a share."""
 
 _LIKE = {"length": ("mm", "a length"), "angle": ("deg", "an angle"), "number": ("", "a number"), "share": ("%", "a share")}
-_TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S?.*?)\s*")
+_TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
 
 
 def text(value: Quantity) -> str:
@@ -59,7 +59,7 @@ def _of_pint(value: Any) -> str:
 
 
 def _unit(name: str) -> tuple[str, float] | None:
-    """What a unit is one of, itself where that has no name, and its size in mm, radians or 1; `None` if the language has no such unit."""
+    """What a unit is one of, and its size in mm, radians or 1; `None` if the language has no such unit."""
     if name in ("", "%"):
         return ("share", 1e-2) if name else ("number", 1.0)
     found = _flank.unit_size(name)

@@ -11,7 +11,6 @@ use crate::project::choices::{
 };
 use crate::project::failure::Failure;
 use crate::project::session::EvaluatorOptions;
-use crate::project::units;
 
 /// Which jobs of a spec, with which values. A [`Job`](crate::Job) makes one of itself.
 #[derive(Clone, Debug)]
@@ -485,31 +484,6 @@ pub enum ToleratedAmount {
     },
     /// A share of the value.
     Share(f64),
-}
-
-impl ToleratedAmount {
-    /// Its number, in mm and radians, or the share.
-    pub fn size(self) -> f64 {
-        match self {
-            ToleratedAmount::Length(size)
-            | ToleratedAmount::Angle(size)
-            | ToleratedAmount::Number(size)
-            | ToleratedAmount::Of(size, _)
-            | ToleratedAmount::Share(size) => size,
-        }
-    }
-
-    /// How much that is of something of a dimension, in mm and radians; none if it is an amount of something else, or a share.
-    pub(crate) fn in_unit(self, dimension: Dimension) -> Option<f64> {
-        let is_compound = dimension != Dimension::LENGTH && !units::is_angle(dimension);
-        match self {
-            ToleratedAmount::Length(mm) => (dimension == Dimension::LENGTH).then_some(mm),
-            ToleratedAmount::Angle(radians) => units::is_angle(dimension).then_some(radians),
-            ToleratedAmount::Number(number) => is_compound.then_some(number),
-            ToleratedAmount::Of(size, of) => (is_compound && dimension.accepts(of)).then_some(size),
-            ToleratedAmount::Share(_) => None,
-        }
-    }
 }
 
 /// How far a member is mounted from where it should be.

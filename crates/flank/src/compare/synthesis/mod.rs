@@ -24,7 +24,6 @@ use crate::contact::{Rolled, rolled};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::remark::NotDoneKind;
 use crate::project::requests::{ContactRequest, JobSelection, SynthesisRequest};
 use crate::project::session::Session;
 use crate::project::shown_path;
