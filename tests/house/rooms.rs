@@ -8,7 +8,7 @@ use flank_tests::repository;
 const BELOW: [&str; 6] = ["expr", "chain-dsl", "solver", "export", "draw", "flank"];
 
 /// Lines of the command line and the page that it serves at the most, and of the protocol of editors beside it.
-const MOST_LINES: [usize; 2] = [4500, 2700];
+const MOST_LINES: [usize; 2] = [4500, 2850];
 
 fn sources(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).expect("a folder of sources");

@@ -108,3 +108,28 @@ fn the_other_sheet_of_a_fold_is_told() {
     let [one, two] = [&other.root, own].map(|root| root.unknowns[2]);
     assert!(two > 0.0 && (one + two).abs() < 1e-9, "{one} {two}");
 }
+
+/// A `keep` that lies across the seam of a motion's full turn holds on both sides of it: a cam with three lobes has two points of each radius in
+/// the half turn about the seam, mirror images of each other.
+#[test]
+fn what_is_kept_goes_on_beyond_the_seam_of_a_turn() {
+    let of = |motion: &str, keep: &str| {
+        let graph = Graph::new();
+        let spec =
+            text("cam_over_the_seam.chain").replace("-180 deg .. 180 deg", motion).replace("90 deg .. 269 deg", keep);
+        let compilation = compile_text(&graph, "cam", &spec, &[]);
+        assert!(!compilation.has_errors(), "{:?}", compilation.diagnostics);
+        solved(&compilation.jobs[0], "lobe")
+    };
+    for motion in ["-180 deg .. 180 deg", "0 deg .. 360 deg"] {
+        let (points, effort) = of(motion, "90 deg .. 269 deg");
+        assert!(points.iter().all(|point| point.outcome == Outcome::Ambiguous), "{motion}");
+        assert_eq!(effort.branches.len(), 2, "{motion}");
+        let [before, after] = ["90 deg .. 180 deg", "180 deg .. 269 deg"].map(|keep| of(motion, keep).0);
+        for (a, b) in before.iter().zip(&after) {
+            assert!(is_solved(a) && is_solved(b), "{motion}: {a:?} {b:?}");
+            let mirrored = [b.position[0], -b.position[1], b.position[2]];
+            assert!(difference(&a.position, &mirrored) < 1e-12, "{motion}: {a:?} {b:?}");
+        }
+    }
+}

@@ -10,7 +10,6 @@ mod documents;
 mod framing;
 mod live;
 mod position;
-mod progress;
 mod server;
 mod snapshot;
 mod tasks;

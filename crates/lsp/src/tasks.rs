@@ -14,8 +14,8 @@ use lsp_server::Notification;
 use serde_json::Value;
 
 use super::documents::Documents;
-use super::progress::{Followed, Running};
 use super::server::Event;
+use super::server::progress::{Followed, Running};
 use super::uri;
 use crate::Spelling;
 use crate::live::Live;

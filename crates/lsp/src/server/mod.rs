@@ -3,6 +3,7 @@
 mod compiling;
 mod editor;
 mod notices;
+pub(super) mod progress;
 mod requests;
 mod threads;
 
@@ -277,7 +278,7 @@ impl<W: Write> Server<W> {
         if !self.editor.shows_progress {
             return Ok(());
         }
-        for (token, begin) in self.tasks.running.to_show(now) {
+        for (token, begin) in self.tasks.running.shown_from(now) {
             self.ask("window/workDoneProgress/create", serde_json::json!({ "token": token }))?;
             self.progress(&token, begin)?;
         }

@@ -62,9 +62,17 @@ impl Choice<'_> {
 
     /// Those of some ranges in which a branch can qualify.
     pub(crate) fn kept(&self, ranges: &[Range]) -> Vec<Range> {
-        let common = |(range, kept): (&Range, &Range)| range.common(*kept);
-        self.keep.as_ref().map_or_else(|| ranges.to_vec(), |keep| ranges.iter().zip(keep.ranges).map(common).collect())
+        let Some(keep) = &self.keep else { return ranges.to_vec() };
+        kept(ranges, keep.ranges, self.periodic)
     }
+}
+
+/// What is kept of some ranges.
+pub(crate) fn kept(ranges: &[Range], kept: &[Range], periodic: &[bool]) -> Vec<Range> {
+    let of = |((range, kept), is_periodic): ((&Range, &Range), &bool)| {
+        if *is_periodic { range.common_turns(*kept) } else { range.common(*kept) }
+    };
+    ranges.iter().zip(kept).zip(periodic).map(of).collect()
 }
 
 /// Whether two roots at the same targets are one, but for turns of what is periodic.

@@ -1,6 +1,6 @@
 //! Ranges, and what becomes of a point that is looked for in them.
 
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// How far outside its range an unknown may wander on its way, as a share of the range.
 const MARGIN: f64 = 0.25;
@@ -55,6 +55,16 @@ impl Range {
     /// What both have in common; where that is nothing, the end of this one that is nearest.
     pub(crate) fn common(self, other: Range) -> Range {
         Range { low: other.low.clamp(self.low, self.high), high: other.high.clamp(self.low, self.high) }
+    }
+
+    /// What this has in common with all turns of another one, of a value that a turn does not change, and what lies between. Where that is
+    /// nothing, as in [`Range::common`].
+    pub(crate) fn common_turns(self, other: Range) -> Range {
+        let turned = [0.0, 1.0, -1.0, 2.0, -2.0].map(|turns| turns * TAU);
+        let turned = turned.map(|turn| Range { low: other.low + turn, high: other.high + turn });
+        let met = turned.into_iter().filter(|of| of.low < self.high && of.high > self.low);
+        let both = |a: Range, b: Range| Range { low: a.low.min(b.low), high: a.high.max(b.high) };
+        met.map(|of| self.common(of)).reduce(both).unwrap_or_else(|| self.common(other))
     }
 
     /// Where something of a size is looked for in it: as far as that from zero; where all of it lies farther out, from its near end on, no

@@ -11,7 +11,7 @@ use std::convert::Infallible;
 
 use flank_expr::{Expr, InstructionSet, LaneTape, ScalarEvaluator, Tape, TapeError};
 
-use crate::continuation::choice::{Choice, Several};
+use crate::continuation::choice::{Choice, Several, kept};
 use crate::continuation::field::Field;
 use crate::continuation::follow::solve_settled;
 use crate::continuation::grid::{Grid, GridReport};
@@ -216,8 +216,7 @@ impl SurfaceProblem {
     /// Every point of the surface with given values of the two coordinates: all roots in the ranges (and in what is kept of them),
     /// proven.
     pub fn all_points(&self, target: [f64; 2]) -> Roots {
-        let kept: Vec<Range> = self.ranges.iter().zip(&self.kept_ranges).map(|(own, kept)| own.common(*kept)).collect();
-        self.roots(&kept, &target)
+        self.roots(&kept(&self.ranges, &self.kept_ranges, &self.periodic), &target)
     }
 
     fn roots(&self, ranges: &[Range], target: &[f64]) -> Roots {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use flank::{Monitor, Work};
 use serde_json::{Value, json};
 
-use super::server::Event;
+use super::Event;
 
 /// Work that ends before is not shown.
 const UNSHOWN: Duration = Duration::from_millis(500);
@@ -19,7 +19,7 @@ const BETWEEN: Duration = Duration::from_millis(200);
 
 /// What goes on, by the token that the editor knows it by.
 #[derive(Default)]
-pub(super) struct Running {
+pub(crate) struct Running {
     of: BTreeMap<String, Piece>,
     begun: usize,
 }
@@ -33,7 +33,7 @@ struct Piece {
 
 impl Running {
     /// Work begins; whoever does it is followed by what comes back.
-    pub(super) fn begin(&mut self, title: String, events: &SyncSender<Event>) -> Followed {
+    pub(crate) fn begin(&mut self, title: String, events: &SyncSender<Event>) -> Followed {
         self.begun += 1;
         let token = format!("flank-work-{}", self.begun);
         let is_stopped = Arc::new(AtomicBool::new(false));
@@ -44,12 +44,12 @@ impl Running {
     }
 
     /// When the next piece of work is to be shown.
-    pub(super) fn shows_at(&self) -> Option<Instant> {
+    pub(crate) fn shows_at(&self) -> Option<Instant> {
         self.of.values().filter(|piece| !piece.is_shown).map(|piece| piece.since + UNSHOWN).min()
     }
 
     /// Tokens and what is told first, of work that goes on for so long that it is to be shown now.
-    pub(super) fn to_show(&mut self, now: Instant) -> Vec<(String, Value)> {
+    pub(crate) fn shown_from(&mut self, now: Instant) -> Vec<(String, Value)> {
         let due = |piece: &&mut Piece| !piece.is_shown && piece.since + UNSHOWN <= now;
         let mut shown = Vec::new();
         for (token, piece) in &mut self.of {
@@ -61,17 +61,17 @@ impl Running {
         shown
     }
 
-    pub(super) fn is_shown(&self, token: &str) -> bool {
+    pub(crate) fn is_shown(&self, token: &str) -> bool {
         self.of.get(token).is_some_and(|piece| piece.is_shown)
     }
 
     /// Work is over; whether it was shown.
-    pub(super) fn end(&mut self, token: &str) -> bool {
+    pub(crate) fn end(&mut self, token: &str) -> bool {
         self.of.remove(token).is_some_and(|piece| piece.is_shown)
     }
 
     /// The editor wants no more of it.
-    pub(super) fn stop(&self, token: &str) {
+    pub(crate) fn stop(&self, token: &str) {
         if let Some(piece) = self.of.get(token) {
             piece.is_stopped.store(true, Ordering::Relaxed);
         }
@@ -102,7 +102,7 @@ impl Drop for Teller {
 }
 
 /// Follows one piece of work.
-pub(super) struct Followed {
+pub(crate) struct Followed {
     teller: Arc<Teller>,
     is_stopped: Arc<AtomicBool>,
 }
