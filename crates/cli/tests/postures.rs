@@ -82,7 +82,7 @@ job cam {
     surface cam in m.work = envelope(w.rim, over: turn)
     sample cam {
         turn: -170 deg .. 170 deg by 35, v: -5 mm .. 5 mm by 3
-        keep a: 60 deg .. 300 deg
+        keep a: 8 deg .. 187 deg
     }
 }
 ";

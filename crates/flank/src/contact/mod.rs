@@ -39,7 +39,7 @@ use crate::convert::milling::flank::MilledFlank;
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
-use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::ContactRequest;
 use crate::project::session::Session;
 use crate::project::spec;
@@ -124,6 +124,13 @@ fn of_contact(
     };
     let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
     let (backlash, unsound) = backlash::of(job, &members, request, &errors, &rolling, session)?;
+    // a pair without backlash is a pair; one flank of it rolls wrongly mounted, too
+    let is_misplaced = errors.iter().any(|error| *error != 0.0);
+    let is_told = |of: &NotDone| is_misplaced && of.kind == NotDoneKind::Penetration;
+    let (jams, unsound): (Vec<NotDone>, Vec<NotDone>) = unsound.into_iter().partition(is_told);
+    let of_pair = &members.surfaces[0].name;
+    let jams = jams.iter().map(|of| Remark::new(RemarkKind::NegativeBacklash, of_pair, of.message.clone()));
+    let jams: Vec<Remark> = jams.collect();
     let rooms = interference::of_spaces(job, &members, &errors, &rolling, session)?;
     let (proven, open) = if request.certify {
         let (proven, open) = proof::of_engagement(&members, &rolling);
@@ -172,7 +179,7 @@ fn of_contact(
             ]
             .concat(),
         ),
-        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks].concat()),
+        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks, &jams].concat()),
         ..result
     })
 }

@@ -121,6 +121,8 @@ pub enum RemarkKind {
     RollTooShort,
     /// A surface of a tooth space was not held against the mate.
     NotLookedAt,
+    /// A pair that is mounted wrongly has less than no backlash.
+    NegativeBacklash,
     /// A setting does not move the surface.
     MovesNothing,
     /// A measured point does not go with the others.
