@@ -3,8 +3,8 @@
 use std::str::FromStr;
 use std::sync::{Mutex, PoisonError};
 
-use flank_chain_dsl::Dimension;
 use flank::{EvaluatorOptions, MountingError, ToleratedAmount, UnknownChoice};
+use flank_chain_dsl::Dimension;
 use pyo3::conversion::FromPyObjectOwned;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;

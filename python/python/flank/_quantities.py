@@ -65,9 +65,10 @@ def _unit(name: str) -> tuple[str, float] | None:
     found = _flank.unit_size(name)
     if found is None:
         return None
-    *powers, size = found
+    of_length, of_angle, size = found
+    known = {(1, 0): "length", (0, 1): "angle", (0, 0): "number"}
     # a product of units by its powers of length and angle: 1/mm is "-1,0"
-    return {(1, 0): "length", (0, 1): "angle", (0, 0): "number"}.get(tuple(powers), "{},{}".format(*powers)), size
+    return known.get((of_length, of_angle), f"{of_length},{of_angle}"), size
 
 
 def _parsed(value: Quantity, what: str, example: str) -> tuple[str, float]:
