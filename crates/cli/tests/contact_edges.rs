@@ -221,6 +221,24 @@ fn room_does_not_depend_on_positions() {
     }
 }
 
+/// Teeth without backlash lean into each other: at the ends of the face, by the lean over the whole width along the normal of both sides. That is a
+/// note where the error is asked for, and no failure.
+#[test]
+fn a_pair_without_backlash_jams_by_its_lean() {
+    for (error, lean) in [("m.D=0.1arcmin", 0.1_f64), ("m.D=-1arcmin", 1.0)] {
+        let found = solved("edges_jam", &["specs/pairs/spur_pair.chain", "drive_side", "--error", error]);
+        let normal = found["backlash"]["normal"].as_f64().expect("a backlash");
+        let lean = (lean / 60.0).to_radians();
+        let known = -20.0 * lean * 20.0_f64.to_radians().cos();
+        // what is of its square is left out
+        assert!((normal / known - 1.0).abs() < lean, "{error}: {normal} {known}");
+        let told = |of: &Value| of["kind"] == "negative_backlash";
+        assert!(found["remarks"].as_array().expect("a list").iter().any(told), "{error}: {}", found["remarks"]);
+    }
+    let straight = solved("edges_jam", &["specs/pairs/spur_pair.chain", "drive_side"]);
+    assert!(straight["remarks"].as_array().expect("a list").iter().all(|of| of["kind"] != "negative_backlash"));
+}
+
 /// Laws and numbers of teeth that do not belong together are told with a way out.
 #[test]
 fn a_law_of_other_teeth_is_told() {

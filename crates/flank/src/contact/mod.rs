@@ -124,13 +124,8 @@ fn of_contact(
     };
     let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
     let (backlash, unsound) = backlash::of(job, &members, request, &errors, &rolling, session)?;
-    // a pair without backlash is a pair; one flank of it rolls wrongly mounted, too
-    let is_misplaced = errors.iter().any(|error| *error != 0.0);
-    let is_told = |of: &NotDone| is_misplaced && of.kind == NotDoneKind::Penetration;
-    let (jams, unsound): (Vec<NotDone>, Vec<NotDone>) = unsound.into_iter().partition(is_told);
-    let of_pair = &members.surfaces[0].name;
-    let jams = jams.iter().map(|of| Remark::new(RemarkKind::NegativeBacklash, of_pair, of.message.clone()));
-    let jams: Vec<Remark> = jams.collect();
+    let (jams, unsound): (Vec<NotDone>, Vec<NotDone>) =
+        unsound.into_iter().partition(|of| of.kind == NotDoneKind::Penetration);
     let rooms = interference::of_spaces(job, &members, &errors, &rolling, session)?;
     let (proven, open) = if request.certify {
         let (proven, open) = proof::of_engagement(&members, &rolling);
@@ -149,6 +144,15 @@ fn of_contact(
             .missed(&members, &format!(" as {} mills it", milled.result.milling))
             .filter(|_| own.missed(&members, "").is_none())
     });
+    let jams: Vec<NotDone> = jams.into_iter().chain(jammed).collect();
+    // one flank of a pair without backlash rolls wrongly mounted, too
+    let is_misplaced = errors.iter().any(|error| *error != 0.0);
+    let (jams, noted) = if is_misplaced { (Vec::new(), jams) } else { (jams, Vec::new()) };
+    let noted = noted.into_iter().map(|of| {
+        let NotDone { of, message, .. } = of;
+        Remark::new(RemarkKind::NegativeBacklash, &of.unwrap_or_default(), message)
+    });
+    let noted: Vec<Remark> = noted.collect();
     let (files, grids) = files::write(
         job,
         &members,
@@ -167,19 +171,9 @@ fn of_contact(
         proven,
         files,
         grids,
-        not_done: origin.located(
-            &[job],
-            [
-                &result.not_done[..],
-                &unsound,
-                &rooms.not_done,
-                &open,
-                &unmilled,
-                &jammed.into_iter().collect::<Vec<_>>(),
-            ]
-            .concat(),
-        ),
-        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks, &jams].concat()),
+        not_done: origin
+            .located(&[job], [&result.not_done[..], &unsound, &rooms.not_done, &open, &unmilled, &jams].concat()),
+        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks, &noted].concat()),
         ..result
     })
 }

@@ -50,9 +50,7 @@ impl Beside {
             ],
         }
     }
-}
 
-impl Beside {
     /// Whether a place is so near that what is known here is enough.
     fn is_near(&self, shares: [f64; 2]) -> bool {
         let way = |k: usize| (shares[k] - self.at[k]).abs() * self.slopes[k].map(|x| x * x).iter().sum::<f64>().sqrt();
