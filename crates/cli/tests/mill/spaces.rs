@@ -5,8 +5,9 @@ use std::path::Path;
 
 use serde_json::Value;
 
+use super::special::{BALL, spur};
 use super::support::{folder, written};
-use super::{mill, sound, text_of};
+use super::{json, mill, sound, text_of};
 
 /// Which milling of a work with 19 teeth.
 const TEETH: f64 = 19.0;
@@ -116,5 +117,26 @@ fn what_is_no_program_is_told() {
     for (file, part) in [(&csv, "no line of it has a G or M word"), (&binary, "it is no text")] {
         let (code, _, errors) = mill(&spec, &out, &["--verify", file.to_str().expect("a plain path")]);
         assert!(code == 1 && errors.contains("is no NC program: ") && errors.contains(part), "{code} {errors}");
+    }
+}
+
+/// What a program with other passes than those of the plan leaves at the most is the highest of its own cusps, which its plan has solved, and not
+/// what it leaves at some points.
+#[test]
+fn the_highest_ridge_of_any_program_is_solved() {
+    let out = folder("mill_ridges");
+    let of = |passes: &str| spur(BALL, "lead 0 deg\n tilt 75 deg").replace("by 13", passes);
+    let other = written(&out, "milled.chain", &of("by 10"));
+    let planned = json(&other, &out, &["--tcp", "--nc", "siemens"]);
+    let text = text_of(&out.join("milled.part.mpf"));
+    let cusp = planned["cusp"]["height_um"].as_f64().expect("passes leave cusps");
+    for passes in ["by 13", "by 10"] {
+        let spec = written(&out, "milled.chain", &of(passes));
+        let (_, found, _) = verified(&spec, &out, &text, &[]);
+        let most = found["verified"]["left"][0]["height_um"].as_f64().expect("it leaves something");
+        assert!((most - cusp).abs() < ROUNDED, "{passes}: {most} {cusp}");
+        let at_points = found["verified"]["heights_um"].as_array().expect("a map");
+        let at_points = at_points.iter().filter_map(Value::as_f64).fold(f64::NEG_INFINITY, f64::max);
+        assert!(at_points < cusp - 2.0 * ROUNDED, "{passes}: {at_points} {cusp}");
     }
 }

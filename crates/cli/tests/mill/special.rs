@@ -27,7 +27,7 @@ const WORM: [&str; 10] = [
 ];
 
 /// A job that mills a flank of a spur gear, which is convex across the passes and straight along them.
-fn spur(cutter: &str, milling: &str) -> String {
+pub(super) fn spur(cutter: &str, milling: &str) -> String {
     let library = self_contained(&SPUR_GEAR);
     format!(
         "{library}\njob milled extends spur_gear_body {{\n machine mill = five_axis_table_table(work_z: 60 mm)\n tool cutter = {cutter}\n \
@@ -36,7 +36,7 @@ fn spur(cutter: &str, milling: &str) -> String {
     )
 }
 
-const BALL: &str = "ball_mill(radius: 1 mm, reach: 40 mm, holder_radius: 8 mm)";
+pub(super) const BALL: &str = "ball_mill(radius: 1 mm, reach: 40 mm, holder_radius: 8 mm)";
 
 /// A ball has no bottom: upright on the surface, and while it leans from one side to the other, it touches with its tip.
 #[test]

@@ -10,11 +10,15 @@ const MOST_STEPS: u32 = 200;
 const CLOSE: f64 = 1e-15;
 /// What lies within this share of an end of a block is beside it.
 const ENDS: f64 = 0.05;
-/// Steps of a search for an extreme by sections.
+/// Steps of a search for a peak at the most ...
 const SECTIONS: u32 = 60;
+/// ... which is as near as this share of the way between its ends: the value then lacks the square of that.
+const SECTION: f64 = 1e-7;
 /// Steps of a search beside a pass, and by how much they get shorter.
 const STEPS_BESIDE: u32 = 6;
 const NEARER: f64 = 0.25;
+/// It ends where a parabola brings less than this, mm.
+const LOWER: f64 = 1e-12;
 
 /// The ridge between two passes at a place along them.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -139,30 +143,87 @@ pub fn lowest_beside(
             _ => 0.0,
         };
         let found = height(best.share + by * apart).map(|height| Cusp { share: best.share + by * apart, height });
-        best = found.filter(|found| found.height < best.height).unwrap_or(best);
+        let lower = found.map_or(0.0, |found| best.height - found.height);
+        best = found.filter(|_| lower > 0.0).unwrap_or(best);
+        if by.abs() < 1.0 && lower.abs() < LOWER {
+            break;
+        }
         apart *= if by.abs() < 1.0 { NEARER } else { 1.0 };
     }
     Some(best)
 }
 
-/// The largest value of a function with one peak between two ends, and where: by golden sections, then the parabola through the last three.
+/// The largest value of a function with one peak between two ends, and where: by parabolas through the best three places, with golden sections
+/// where these do not close in (Brent's method).
 pub fn peak([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> Option<f64>) -> Option<(f64, f64)> {
-    let golden = 0.5 * (5.0f64.sqrt() - 1.0);
-    let (mut a, mut b) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_a, mut at_b) = (value(a)?, value(b)?);
+    let golden = 0.5 * (3.0 - 5.0f64.sqrt());
+    let close = SECTION * (high - low);
+    let first = low + golden * (high - low);
+    let [mut best, mut second, mut third] = [(first, value(first)?); 3];
+    // the step before, and the one before that
+    let mut steps = [0.0f64; 2];
     for _ in 0..SECTIONS {
-        if at_a > at_b {
-            (high, b, at_b) = (b, a, at_a);
-            a = high - golden * (high - low);
-            at_a = value(a)?;
-        } else {
-            (low, a, at_a) = (a, b, at_b);
-            b = low + golden * (high - low);
-            at_b = value(b)?;
-        }
-        if high - low < 1e-9 {
+        let middle = 0.5 * (low + high);
+        if (best.0 - middle).abs() <= 2.0 * close - 0.5 * (high - low) {
             break;
         }
+        let to_end = if best.0 < middle { high - best.0 } else { low - best.0 };
+        let by_parabola = vertex([second, best, third]).filter(|place| {
+            let is_inside = low + 2.0 * close <= *place && *place <= high - 2.0 * close;
+            is_inside && (place - best.0).abs() < 0.5 * steps[1].abs()
+        });
+        let step = by_parabola.map_or(golden * to_end, |place| place - best.0);
+        steps = [step, if by_parabola.is_some() { steps[0] } else { to_end }];
+        let share = best.0 + if step.abs() < close { close.copysign(step) } else { step };
+        let found = (share, value(share)?);
+        if found.1 >= best.1 {
+            (low, high) = if share >= best.0 { (best.0, high) } else { (low, best.0) };
+            (best, second, third) = (found, best, second);
+            continue;
+        }
+        (low, high) = if share < best.0 { (share, high) } else { (low, share) };
+        if found.1 >= second.1 || second.0 == best.0 {
+            (second, third) = (found, second);
+        } else if found.1 >= third.1 || third.0 == best.0 || third.0 == second.0 {
+            third = found;
+        }
     }
-    Some(if at_a > at_b { (a, at_a) } else { (b, at_b) })
+    Some(best)
+}
+
+/// Where the parabola through three places has its peak, if it has one.
+fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
+    let [before, behind] = [a, c].map(|(share, _)| share - b.0);
+    let [left, right] = [behind * (b.1 - a.1), before * (b.1 - c.1)];
+    let by = 0.5 * (before * right - behind * left) / (right - left);
+    by.is_finite().then_some(b.0 + by)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_peak_is_found_within_its_ends_and_at_them() {
+        let between = [0.2, 0.21];
+        let off = |place: f64, value: &dyn Fn(f64) -> f64| {
+            let calls = std::cell::Cell::new(0);
+            let found = peak(between, |share| {
+                calls.set(calls.get() + 1);
+                Some(value(share))
+            });
+            let (share, height) = found.expect("it has values");
+            assert!((share - place).abs() < 3e-9 && height == value(share), "{share} {place}");
+            calls.get()
+        };
+        let bow = |share: f64| 0.3 * (share - 0.2) * (0.21 - share) + (share - 0.2).powi(3);
+        // 0.3 (0.01 - 2 x) + 3 x^2 = 0
+        assert!(off(0.2 + (0.6 - (0.36f64 - 0.036).sqrt()) / 6.0, &bow) < 15);
+        assert!(off(0.21, &|share| 5.0 * share) < 60);
+        assert!(off(0.2, &|share| -share.powi(3)) < 60);
+        // a place that no cutter comes to, as deep as can be
+        let cut = |share: f64| if share < 0.2003 { f64::NEG_INFINITY } else { -(share - 0.2071).abs() };
+        assert!(off(0.2071, &cut) < 60);
+        assert_eq!(peak(between, |_| None), None);
+    }
 }

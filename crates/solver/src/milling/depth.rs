@@ -146,13 +146,12 @@ impl Guard<'_> {
         if self.obstacle.far(&self.shape, &pose) > far {
             return None;
         }
-        let coarse = self.obstacle.nearest_point(&self.shape, &pose);
-        if coarse.distance - self.obstacle.reach() > far {
-            return None;
-        }
+        let coarse = self.obstacle.nearest_point(&self.shape, &pose, far)?;
         let mut part = Part { guard: self, way, place, beside: Beside::new(self.obstacle, coarse.shares) };
         let first = part.foot(middle, coarse.shares);
-        part.beside = Beside::new(self.obstacle, first.shares);
+        if !part.beside.is_near(first.shares) {
+            part.beside = Beside::new(self.obstacle, first.shares);
+        }
         let apart = (high - low) / (PLACES - 1) as f64;
         let all = (0..PLACES).map(|k| part.foot(low + k as f64 * apart, first.shares));
         let mut best = part.lowest(all.reduce(nearer)?, 0.5 * apart, [low, high]);

@@ -225,7 +225,7 @@ impl Obstacle {
         if far >= limit {
             return far;
         }
-        let mut best = (f64::INFINITY, 0);
+        let mut best = (limit + self.reach, 0);
         self.nearest_in(whole, &distance, &mut best);
         best.0 - self.reach
     }
@@ -233,10 +233,7 @@ impl Obstacle {
     /// The place that is nearest to a body at a pose; `None` if none can be nearer than `limit`.
     pub fn nearest(&self, body: &ToolBody, pose: &[f64; 6], limit: f64) -> Option<Nearest> {
         let shape = body.shape();
-        let Nearest { distance: coarse, shares: start } = self.nearest_point(&shape, pose);
-        if coarse - self.reach > limit {
-            return None;
-        }
+        let Nearest { distance: coarse, shares: start } = self.nearest_point(&shape, pose, limit)?;
         let found = self.solved(&|point| shape.distance(pose, point), start);
         Some(if found.distance <= coarse { found } else { Nearest { distance: coarse, shares: start } })
     }
@@ -265,22 +262,17 @@ impl Obstacle {
         least_value(&self.surface, value, at)
     }
 
-    /// The nearest of the points that are looked at first, mm and shares.
-    pub(super) fn nearest_point(&self, shape: &Shape, pose: &[f64; 6]) -> Nearest {
+    /// The nearest of the points that are looked at first, mm and shares; `None` if no place can be nearer than `limit`.
+    pub(super) fn nearest_point(&self, shape: &Shape, pose: &[f64; 6], limit: f64) -> Option<Nearest> {
         let distance = |point: usize| shape.distance(pose, self.points[point]);
-        let mut best = (f64::INFINITY, 0);
+        let mut best = (limit + self.reach, usize::MAX);
         self.nearest_in(&self.parts[0], &distance, &mut best);
-        Nearest { distance: best.0, shares: self.shares(best.1) }
+        (best.1 != usize::MAX).then(|| Nearest { distance: best.0, shares: self.shares(best.1) })
     }
 
     /// The nearest place to a body, from a start.
     pub(super) fn nearest_from(&self, shape: &Shape, pose: &[f64; 6], start: [f64; 2]) -> Nearest {
         self.solved(&|point| shape.distance(pose, point), start)
-    }
-
-    /// How far from the nearest of these points the nearest place of the surface may lie, mm.
-    pub(super) fn reach(&self) -> f64 {
-        self.reach
     }
 
     /// What no place of the surface is nearer than, at a glance.

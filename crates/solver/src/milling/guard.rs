@@ -67,12 +67,15 @@ impl<'o> Guard<'o> {
 
     /// The first place of a way at which the body is nearer than `limit`, mm; what is nearer by less than `close` may be passed over.
     ///
-    /// A distance changes by no more than the body moves. So a step is as long as it takes to come down to the limit.
+    /// A distance changes by no more than the body moves. So a step is as long as it takes to come down to the limit, and a way is passed over
+    /// whose middle is far enough away.
     pub fn struck(&self, way: &PoseSeries, limit: f64, close: f64) -> Option<Struck> {
         let rate = self.rate(way);
+        self.nearest(&way.at(0.5), 0.5, (f64::NEG_INFINITY, limit + 0.5 * rate))?;
         let mut share = 0.0;
         loop {
-            let found = self.nearest(&way.at(share), share, limit + close);
+            let far = limit + ((1.0 - share) * rate).max(close);
+            let found = self.nearest(&way.at(share), share, (limit + close, far))?;
             if found.distance < limit {
                 return Some(found);
             }
@@ -88,7 +91,7 @@ impl<'o> Guard<'o> {
         let by = step / self.rate(way);
         let count = ((1.0 - first.share) / by).ceil() as usize;
         let all = (1..=count).map(|k| (first.share + k as f64 * by).min(1.0));
-        let found = all.map(|share| self.nearest(&way.at(share), share, 0.0));
+        let found = all.filter_map(|share| self.nearest(&way.at(share), share, (0.0, 0.0)));
         found.fold(first, |a, b| if b.distance < a.distance { b } else { a })
     }
 
@@ -98,9 +101,9 @@ impl<'o> Guard<'o> {
         (tip + self.reach * axis).max(f64::MIN_POSITIVE)
     }
 
-    /// What of all places is nearest, exactly where that is below `exact`, else a bound.
-    fn nearest(&self, pose: &[f64; 6], share: f64, exact: f64) -> Struck {
-        let mut least = Struck { distance: f64::INFINITY, share, place: 0, shares: [0.0; 2] };
+    /// What of all places is nearest, exactly where that is below `exact`, else a bound; `None` if nothing is nearer than `far`.
+    fn nearest(&self, pose: &[f64; 6], share: f64, (exact, far): (f64, f64)) -> Option<Struck> {
+        let mut least = Struck { distance: far, share, place: 0, shares: [0.0; 2] };
         for (place, stands) in self.places.iter().enumerate() {
             let pose = stands.back(pose);
             let bound = self.obstacle.bound(&self.shape, &pose, least.distance);
@@ -113,7 +116,7 @@ impl<'o> Guard<'o> {
                 least = Struck { distance, share, place, shares };
             }
         }
-        least
+        (least.distance < far).then_some(least)
     }
 }
 
@@ -152,6 +155,8 @@ mod tests {
         let deepest = all.deepest(&way, found, 0.05);
         // at the end the surface is 1 mm off the pin's axis, and 4 mm long
         assert!((deepest.distance + 1.0).abs() < 0.1, "{deepest:?}");
+        let exact = all.sharpened(&way, deepest);
+        assert!((exact.distance + 1.0).abs() < 1e-9 && exact.share == 1.0, "{exact:?}");
         let past = PoseSeries::sampled(3, |s| [10.0 - 20.0 * s, 32.5, -1.0, 0.0, 0.0, 1.0]);
         assert_eq!(all.struck(&past, -0.01, 0.05), None);
     }

@@ -22,13 +22,14 @@ impl PoseSeries {
     pub fn through(values: &[[f64; 6]]) -> PoseSeries {
         let last = values.len() - 1;
         assert!(last > 0, "a line has two points");
+        let cosines: Vec<f64> = (0..2 * last).map(|k| (PI * k as f64 / last as f64).cos()).collect();
         let coefficient = |degree: usize| {
             let mut sum = [0.0; 6];
             for (k, value) in values.iter().enumerate() {
                 // the shares run against the cosine
-                let angle = PI * ((degree * (last - k)) % (2 * last)) as f64 / last as f64;
+                let cosine = cosines[(degree * (last - k)) % (2 * last)];
                 let end = if k == 0 || k == last { 0.5 } else { 1.0 };
-                (0..6).for_each(|i| sum[i] += end * angle.cos() * value[i]);
+                (0..6).for_each(|i| sum[i] += end * cosine * value[i]);
             }
             let whole = if degree == 0 || degree == last { 1.0 } else { 2.0 };
             sum.map(|sum| sum * whole / last as f64)
@@ -53,14 +54,21 @@ impl PoseSeries {
 
     /// The values at a share.
     pub fn at(&self, share: f64) -> [f64; 6] {
-        self.moving(share)[0]
+        let x = 2.0 * share - 1.0;
+        let mut value = [[0.0; 6]; 2];
+        // Clenshaw's recurrence
+        for c in self.coefficients[1..].iter().rev() {
+            let next = |i: usize| c[i] + 2.0 * x * value[0][i] - value[1][i];
+            value = [[0, 1, 2, 3, 4, 5].map(next), value[0]];
+        }
+        [0, 1, 2, 3, 4, 5].map(|i| self.coefficients[0][i] + x * value[0][i] - value[1][i])
     }
 
     /// The values with their derivatives by the share.
     pub fn moving(&self, share: f64) -> Moving {
         let x = 2.0 * share - 1.0;
         let (mut value, mut slope, mut bend) = ([[0.0; 6]; 2], [[0.0; 6]; 2], [[0.0; 6]; 2]);
-        // Clenshaw's recurrence, differentiated twice
+        // the same recurrence, differentiated twice
         for c in self.coefficients[1..].iter().rev() {
             for i in 0..6 {
                 let b = 2.0 * (2.0 * slope[0][i] + x * bend[0][i]) - bend[1][i];

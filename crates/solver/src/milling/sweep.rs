@@ -1,5 +1,7 @@
 //! What all ways of a cutter together leave over a point of a surface.
 
+use rayon::prelude::*;
+
 use crate::milling::deep::deepest;
 use crate::milling::distance::{Shape, ToolBody};
 use crate::milling::height::{NormalLine, lowest, lowest_until};
@@ -24,6 +26,8 @@ const SHANK: f64 = 2.0;
 const LOWER: f64 = 1e-7;
 /// The ball about a cutter has its centre in that of an arc where it is larger than the least by less than this factor.
 const TO_BALL: f64 = 1.5;
+/// Parts of a way that are shorter against its reach are not cut in two.
+const SHORT: f64 = 0.1;
 /// Ways of a cluster that are looked at one by one.
 const FEW: usize = 8;
 
@@ -97,7 +101,7 @@ impl SweptCutter {
             let piece = |k: usize| PoseSeries::sampled(NODES, |share| pass.at(place(k, share)));
             (0..pieces).map(|k| (number, piece(k))).collect::<Vec<_>>()
         };
-        SweptCutter::new(passes.iter().enumerate().flat_map(of_pass).collect(), cutter)
+        SweptCutter::new(passes.par_iter().enumerate().flat_map_iter(of_pass).collect(), cutter)
     }
 
     fn new(ways: Vec<(usize, PoseSeries)>, cutter: &Cutter) -> SweptCutter {
@@ -109,7 +113,7 @@ impl SweptCutter {
             let reach = BENT * moved(0.0).max(moved(1.0));
             Way { middle, reach, number, series }
         };
-        let ways: Vec<Way> = ways.into_iter().map(way).collect();
+        let ways: Vec<Way> = ways.into_par_iter().map(way).collect();
         let (mut order, mut clusters): (Vec<usize>, Vec<Cluster>) = ((0..ways.len()).collect(), Vec::new());
         if !ways.is_empty() {
             let spheres: Vec<([f64; 3], f64)> =
@@ -150,6 +154,9 @@ impl SweptCutter {
             if bound > limit(best) || is_enough(best) {
                 break;
             }
+            if self.stays_away(k, point, limit(best)) {
+                continue;
+            }
             let found = self.lowest_on(k, line);
             best = match (best, found) {
                 (Some(best), Some(found)) if found.height >= best.height => Some(best),
@@ -157,6 +164,32 @@ impl SweptCutter {
             };
         }
         best
+    }
+
+    /// What one of the blocks leaves over a point, mm; `None` if the cutter does not pass it on that.
+    pub fn left_by(&self, block: usize, line: &NormalLine) -> Option<f64> {
+        lowest(&self.ways[block].series, &self.cutter, line, 0.5).map(|found| found.height)
+    }
+
+    /// Whether the cutter stays farther from a point than a distance on all of a way: as it does in parts at whose ends it is far enough away.
+    fn stays_away(&self, k: usize, point: [f64; 3], far: f64) -> bool {
+        let way = &self.ways[k];
+        let distance = |share: f64| self.body.distance(&way.series.at(share), point);
+        let mut left = vec![([0.0, 1.0], [0.0, 1.0].map(distance), 2.0 * way.reach)];
+        while let Some((shares, ends, moved)) = left.pop() {
+            // a distance changes by no more than the cutter moves
+            if 0.5 * (ends[0] + ends[1] - moved) > far {
+                continue;
+            }
+            if ends[0].min(ends[1]) <= far || moved < SHORT * way.reach {
+                return false;
+            }
+            let middle = 0.5 * (shares[0] + shares[1]);
+            let here = distance(middle);
+            left.push(([shares[0], middle], [ends[0], here], 0.5 * moved));
+            left.push(([middle, shares[1]], [here, ends[1]], 0.5 * moved));
+        }
+        true
     }
 
     /// A height that is not above `enough`, if a way is seen at once to leave one: the place in that height lies in the cutter.

@@ -19,7 +19,7 @@ use crate::project::remark::{NotDone, NotDoneKind};
 const TURNED: f64 = 0.5;
 /// What a move may pass over, mm: of rapids, which keep away, and of cutting blocks, which are beside the surface all the way.
 const CLOSE: [f64; 2] = [0.05, 0.2];
-/// Where it cuts in, its depth is looked at every so often, mm.
+/// Where it cuts in, its depth is looked at every so often, mm, and solved where it is deepest.
 const STEP: f64 = 0.25;
 /// Of so many moves that cut in the deepest is told.
 const MOST: usize = 100;
@@ -76,15 +76,13 @@ type Places = [[f64; 6]; PLACES.len()];
 /// and no two moves over them are alike.
 fn alike(moves: &[&Move], places: &[SpacePlace], axes: &FreeAxes) -> Vec<Alike> {
     let is_round = places.len() > 1 && places.iter().all(|place| place.shift == 0.0);
+    if !is_round {
+        return (0..moves.len()).map(|first| Alike { first, count: 1 }).collect();
+    }
+    let ways: Vec<Places> = moves.par_iter().map(|one| in_first_space(&one.series(axes), places)).collect();
     let mut found: Vec<Alike> = Vec::new();
     let mut known: HashMap<[i64; 3], Vec<(usize, Places)>> = HashMap::new();
-    for (number, one) in moves.iter().enumerate() {
-        let fresh = Alike { first: number, count: 1 };
-        if !is_round {
-            found.push(fresh);
-            continue;
-        }
-        let way = in_first_space(&one.series(axes), places);
+    for (number, way) in ways.into_iter().enumerate() {
         let cell = [0, 1, 2].map(|k| (way[0][k] / CELL).floor() as i64);
         let beside = |by: usize| [by / 9, by / 3 % 3, by % 3].map(|by| by as i64 - 1);
         let near = (0..27).map(beside).filter_map(|by| known.get(&[0, 1, 2].map(|k| cell[k] + by[k])));
@@ -94,7 +92,7 @@ fn alike(moves: &[&Move], places: &[SpacePlace], axes: &FreeAxes) -> Vec<Alike> 
             Some(first) => found[first].count += 1,
             None => {
                 known.entry(cell).or_default().push((found.len(), way));
-                found.push(fresh);
+                found.push(Alike { first: number, count: 1 });
             }
         }
     }
@@ -179,7 +177,9 @@ impl<'f, 'j, 'g> Guards<'f, 'j, 'g> {
         let depth = |(alike, hit): &(Alike, Hit)| {
             let part = &moves[alike.first].parts(axes, TURNED)[hit.part];
             let (_, guard) = guards.iter().find(|(number, _)| *number == hit.guard).expect("it is one of them");
-            Hit { struck: guard.deepest(&part.series(axes), hit.struck, STEP), ..*hit }
+            let series = part.series(axes);
+            let deepest = guard.deepest(&series, hit.struck, STEP);
+            Hit { struck: guard.sharpened(&series, deepest), ..*hit }
         };
         let depths: Vec<Hit> = hits[..hits.len().min(MOST)].par_iter().map(depth).collect();
         Some((depths.into_iter().reduce(deeper)?, hits.iter().map(|(alike, _)| alike.count).sum()))

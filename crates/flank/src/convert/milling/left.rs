@@ -6,7 +6,7 @@ use flank_solver::{LeftOver, SpacePlace, SweptCutter};
 use rayon::prelude::*;
 
 use super::left_at;
-use super::plan::LeftAt;
+use super::plan::{LeftAt, higher};
 use super::result::HeightMap;
 use super::target::{Fields, Target};
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -67,6 +67,14 @@ impl LeftMap {
     /// Where most is left.
     pub(super) fn highest(&self) -> Option<LeftAt> {
         self.places().reduce(|a, b| if b.height > a.height { b } else { a })
+    }
+
+    /// Where most is left in each of so many parts by so many.
+    pub(super) fn highest_of_parts(&self, parts: usize) -> Vec<LeftAt> {
+        let part = |left: &LeftAt| left.shares.map(|share| (share * parts as f64) as usize);
+        let all = (0..parts * parts).map(|k| [k / parts, k % parts]);
+        let highest = |of: [usize; 2]| self.places().filter(|left| part(left) == of).reduce(higher);
+        all.filter_map(highest).collect()
     }
 
     /// Where least is left, and the number of the way that leaves it.

@@ -11,6 +11,7 @@ use super::machine::Machine;
 use super::patch::Lattice;
 use super::plan::{LeftAt, Plan, higher};
 use super::result::HeightLeft;
+use super::ridge::Ridges;
 use super::target::{Fields, Target};
 use super::verify::in_space;
 use super::{Found, left_at};
@@ -31,6 +32,8 @@ const LOOKED_AT: usize = 8;
 const ROUNDING: f64 = 1e-7;
 /// Contacts that tell whether a program cuts in a space.
 const FEW: usize = 9;
+/// From the highest place of so many parts of the map by so many ridges are climbed.
+const PARTS: usize = 4;
 /// Details that are told at the most.
 const TOLD: usize = 6;
 
@@ -143,6 +146,7 @@ impl Measured {
         if let Some((left, space, _)) = missing.high.filter(|(left, ..)| left.height.is_finite()) {
             most = most.map(|(known, of)| if left.height > known.height { (left, space) } else { (known, of) });
         }
+        let most = most.map(|known| sweep.highest(known, &maps[0]));
         let depths = sweep.depths(&blocks.series, &spaces);
         let deepest = depths.first().map(|depth| (depth.left, depth.space, blocks.lines[depth.block]));
         let least = least.into_iter().chain(deepest).reduce(deeper);
@@ -296,6 +300,15 @@ impl Sweep<'_> {
         let left = self.swept.left_until(&line, self.stock + allowed);
         let height = left.map_or(f64::INFINITY, |left| left.height - self.stock);
         (height > allowed).then_some(height)
+    }
+
+    /// The highest ridge of a space near where most is known to be left, in it or in the first, and where the plan leaves most.
+    fn highest(&self, (known, space): (LeftAt, u32), map: &LeftMap) -> (LeftAt, u32) {
+        let starts: Vec<LeftAt> =
+            map.highest_of_parts(PARTS).into_iter().chain(self.plan.cusp).chain([known]).collect();
+        let stands = self.places[space as usize];
+        let ridges = Ridges { fields: self.fields, swept: &self.swept, stands, cells: map.counts, stock: self.stock };
+        (ridges.highest(&starts).map_or(known, |found| higher(known, found)), space)
     }
 
     /// Spaces that are to be milled.

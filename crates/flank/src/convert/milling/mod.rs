@@ -20,6 +20,7 @@ mod program;
 mod proof;
 pub(crate) mod result;
 mod retract;
+mod ridge;
 pub(crate) mod setup;
 pub(crate) mod side;
 mod spaces;

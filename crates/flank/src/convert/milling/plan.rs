@@ -272,12 +272,17 @@ impl Planner<'_, '_, '_> {
     fn left_by_blocks(&self, passes: &[f64], along: &[f64], which: &[usize]) -> Result<[LeftAt; 2], NotDone> {
         let (fields, cutter, axes, stock) = (self.fields, &self.cutter.cutting, self.axes, self.stock());
         let between = 1.0 / (passes.len() - 1) as f64;
+        let across = |pair: &[f64]| {
+            let middle = 0.5 * (pair[0] + pair[1]);
+            (middle, fields.surface.across(middle))
+        };
+        let middles: Vec<(f64, PoseSeries)> = along.par_windows(2).map(across).collect();
         let of_pass = |number: &usize| -> Result<[LeftAt; 2], Lost> {
             let share = passes[*number];
             let (surface, path) = (fields.surface.pass(share), fields.of_pass(*number).pass(share));
             let blocks = blocks(axes, &path, along);
             let mut ends = [LeftAt { shares: [share, 0.0], height: 0.0 }; 2];
-            for (pair, block) in along.windows(2).zip(&blocks) {
+            for ((pair, block), (middle, across)) in along.windows(2).zip(&blocks).zip(&middles) {
                 let found = left_by_block(&surface, block, [pair[0], pair[1]], cutter, stock);
                 let from_pole = |axes: &FreeAxes| {
                     let ends = [pair[0], pair[1]].map(|share| axes.angle_from_pole(&path.at(share)));
@@ -287,10 +292,9 @@ impl Planner<'_, '_, '_> {
                     found.ok_or_else(|| Lost { shares: [share, pair[0]], from_pole: axes.map(from_pole) })?;
                 let left = LeftAt { shares: [share, at], height: height - stock };
                 ends = [higher(ends[0], left), lower(ends[1], left)];
-                let middle = 0.5 * (pair[0] + pair[1]);
-                let beside = lowest_beside(&fields.surface.across(middle), block, (share, 0.5 * between), 0.5, cutter);
+                let beside = lowest_beside(across, block, (share, 0.5 * between), 0.5, cutter);
                 let beside = beside.filter(|beside| (0.0..=1.0).contains(&beside.share));
-                let left = |beside: Cusp| LeftAt { shares: [beside.share, middle], height: beside.height - stock };
+                let left = |beside: Cusp| LeftAt { shares: [beside.share, *middle], height: beside.height - stock };
                 ends[1] = beside.map_or(ends[1], |beside| lower(ends[1], left(beside)));
             }
             Ok(ends)

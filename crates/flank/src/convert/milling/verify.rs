@@ -4,6 +4,7 @@ use std::path::Path;
 
 use flank_chain_dsl::BlockLength;
 use flank_solver::{PoseSeries, SpacePlace, SweptCutter};
+use rayon::prelude::*;
 
 use super::Found;
 use super::block::Motion;
@@ -74,15 +75,14 @@ pub(super) fn program(
     let (rapids, cuts): (Vec<Move>, Vec<Move>) = moves.into_iter().partition(|one| one.motion == Motion::Rapid);
     let (blocks, has_tip_control) = (cuts.len(), cuts.iter().any(|cut| cut.has_tip_control));
     let part = |places: &[SpacePlace]| MilledPart::new(&found.fields, places, found.cutter.cutting.reach());
-    let series = |moves: &[Move]| moves.iter().map(|one| one.series(&machine.axes)).collect::<Vec<PoseSeries>>();
-    let cuts = part(&found.spaces.alike()).near(cuts, &machine.axes);
-    let lines = cuts.iter().map(|cut| cut.line).collect();
-    let cuts = Blocks { series: series(&cuts), lines, has_tip_control };
+    let (lines, series) = part(&found.spaces.alike()).near(cuts, &machine.axes).into_iter().unzip();
+    let cuts = Blocks { series, lines, has_tip_control };
     let (measured, map) = Measured::of_blocks(cuts, target, found, (machine, asked, promised));
     let rapids = part(&[SpacePlace::default()]).near(rapids, &machine.axes);
-    let swept = SweptCutter::of_blocks(series(&rapids), &found.cutter.cutting);
+    let (of_rapids, rapids): (Vec<usize>, Vec<PoseSeries>) = rapids.into_iter().unzip();
+    let swept = SweptCutter::of_blocks(rapids, &found.cutter.cutting);
     let by_rapids = LeftMap::of_cutter(target, &found.fields, &swept, found.map.counts);
-    let rapid = by_rapids.deepest().map(|(left, number)| (left, rapids[number].line));
+    let rapid = by_rapids.deepest().map(|(left, number)| (left, of_rapids[number]));
     Ok(ReadProgram {
         file: shown,
         blocks,
@@ -175,10 +175,14 @@ impl MilledPart {
         MilledPart { center, radius, reach }
     }
 
-    /// The parts of moves that come near, with little turns of rotary axes; those of rapids are short against the cutter.
-    fn near(&self, moves: Vec<Move>, axes: &FreeAxes) -> Vec<Move> {
-        let (mut left, mut near) = (moves, Vec::new());
-        left.reverse();
+    /// The parts of moves that come near, each with its line.
+    fn near(&self, moves: Vec<Move>, axes: &FreeAxes) -> Vec<(usize, PoseSeries)> {
+        moves.into_par_iter().flat_map_iter(|one| self.near_of(one, axes)).collect()
+    }
+
+    /// Those of one move, with little turns of rotary axes; those of rapids are short against the cutter.
+    fn near_of(&self, one: Move, axes: &FreeAxes) -> Vec<(usize, PoseSeries)> {
+        let (mut left, mut near) = (vec![one], Vec::new());
         while let Some(one) = left.pop() {
             let series = one.series(axes);
             let [first, middle, last] = [0.0, 0.5, 1.0].map(|share| series.at(share));
@@ -190,7 +194,7 @@ impl MilledPart {
                 continue;
             }
             if is_even && (moved <= self.reach || one.motion == Motion::Straight) {
-                near.push(one);
+                near.push((one.line, series));
             } else {
                 left.extend(one.halves(axes).into_iter().rev());
             }
