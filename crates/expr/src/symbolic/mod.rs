@@ -2,6 +2,7 @@
 
 pub(crate) mod curve;
 pub(crate) mod derivative;
+pub(crate) mod expression;
 pub(crate) mod graph;
 pub(crate) mod hash;
 pub(crate) mod implicit;
@@ -10,3 +11,4 @@ pub(crate) mod op;
 pub(crate) mod print;
 pub(crate) mod rules;
 pub(crate) mod terms;
+pub(crate) mod walk;
