@@ -133,17 +133,19 @@ fn sides_that_differ_have_rows_of_their_own() {
         "SIDE_2",
         "TIP",
     ];
-    let first = [("35 deg", "12 deg"), ("12 deg", "35 deg"), ("25 deg", "10 deg"), ("20 deg", "20 deg")];
-    // of the second order where the root is no shorter than its bricks are thick
-    let second = [("25 deg", "15 deg"), ("20 deg", "20 deg")];
-    let of_order =
-        |order, angles: &[(&'static str, &'static str)]| angles.iter().map(move |of| (order, *of)).collect::<Vec<_>>();
-    let [first, second] = [of_order(ORDERS[0], &first), of_order(ORDERS[1], &second)];
-    for (order, (loaded, coast)) in first.into_iter().chain(second) {
+    // of 32 and 20 degrees the root is 0.06 mm long, beside bricks that are 0.5 mm thick
+    let angles =
+        [("35 deg", "12 deg"), ("12 deg", "35 deg"), ("32 deg", "20 deg"), ("25 deg", "10 deg"), ("20 deg", "20 deg")];
+    for (order, (loaded, coast)) in ORDERS.into_iter().flat_map(|order| angles.map(|of| (order, of))) {
         let set = [("loaded_angle", loaded), ("coast_angle", coast)];
         let (numbers, deck) = Asked { set: &set, order, ..Asked::new(SPEC, "asymmetric") }.only();
-        // with the same rows on both sides the least was 0.03
+        // with the same rows on both sides the least was 0.03, with the mean of the directions beside a node -1.00
         assert!(numbers.least_scaled_jacobian > 0.3, "{loaded} {coast}: {numbers}");
+        assert!(numbers.least_jacobian > 0.3, "at Gauss points, {loaded} {coast}: {numbers}");
+        let exact = numbers.exact_volume_mm3.expect("all teeth are alike");
+        // edges a tenth of the tooth's width long: straight ones lose some 1e-4 of it, parabolas the square of that and a reserve
+        let off = if order == ElementOrder::First { 1e-3 } else { 2e-6 };
+        assert!((numbers.volume_mm3 / exact - 1.0).abs() < off, "{loaded} {coast}: {numbers}");
         let across = &numbers.elements.across;
         let sides = [&across[..2], &across[3..]].map(|side| side.iter().sum::<usize>());
         assert_eq!((sides[0], across[2] % 2), (sides[1], 0), "{across:?}");
@@ -327,7 +329,8 @@ fn volumes_converge_to_that_of_the_body() {
                 (numbers.volume_mm3 / numbers.exact_volume_mm3.expect("all teeth are alike") - 1.0).abs()
             });
             let found = (off[0] / off[2]).log2() / 2.0;
-            assert!((found - rate).abs() < 0.35, "{job} {order:?}: {found} of {off:?}");
+            // the coarsest may still be off by more than its share
+            assert!((rate - 0.35..rate + 0.6).contains(&found), "{job} {order:?}: {found} of {off:?}");
         }
     }
 }
@@ -427,7 +430,7 @@ fn what_cannot_be_cut_is_told_with_its_reason() {
 fn bricks_that_curved_edges_fold_are_refused() {
     let asked = |order: ElementOrder| {
         let (result, files) =
-            Asked { order, elements: [1, 12, 6], ..Asked::new("specs/bodies/spur_gear_body.chain", "") }.meshed();
+            Asked { order, elements: [1, 12, 6], ..Asked::new("specs/bodies/undercut_gear_body.chain", "") }.meshed();
         (result, files.is_empty())
     };
     let (result, is_empty) = asked(ElementOrder::Second);

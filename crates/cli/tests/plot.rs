@@ -175,7 +175,7 @@ fn circles_of_a_section_are_those_of_tips_and_roots() {
     for (spec, job) in [("specs/hobbing/spur_gear.chain", "spur_gear"), ("specs/bevel/gear_19x62.chain", "gear_19x62")]
     {
         let drawn = section(spec, job);
-        assert!(drawn.contains("tip circle, ") && drawn.contains("root circle, "), "{job}");
+        assert!(drawn.contains("tip circle, Ø ") && drawn.contains("root circle, Ø "), "{job}");
     }
 }
 

@@ -271,3 +271,49 @@ job rotor extends female_rotor {
         assert!((tips[0] - 2.0 * below - tip).abs() < 1e-6, "{below}: {tip}");
     }
 }
+
+/// Slots with leaning walls, each wider than the one before: where some teeth are pointed and others not, that is told with how many and by how much,
+/// and teeth that are all pointed end in edges.
+#[test]
+fn some_pointed_teeth_among_others_are_told() {
+    const SPEC: &str = "tests/surfaces/specs/slotted_disc.chain";
+    let [ground, tip, pitch] = [30f64, 40.0, PI / 6.0];
+    // where a wall of 30 degrees reaches a circle, as an angle from the middle of its slot
+    let angle_at = |rho: f64, half: f64| {
+        let (mut low, mut high) = (ground, rho);
+        for _ in 0..60 {
+            let middle = 0.5 * (low + high);
+            let wall = half + (middle - ground) * f64::to_radians(30.0).tan();
+            if middle.hypot(wall) < rho { low = middle } else { high = middle }
+        }
+        (low / rho).acos()
+    };
+    let angle = |half: f64| angle_at(tip, half);
+    for (first, wider) in [(4.0, 0.2), (5.0, 0.2), (2.0, 0.4)] {
+        let half = |space: u32| first + wider * f64::from(space);
+        let overlaps = (0..12).map(|space| tip * (angle(half(space)) + angle(half((space + 1) % 12)) - pitch));
+        let overlaps: Vec<f64> = overlaps.collect();
+        let pointed = overlaps.iter().filter(|overlap| **overlap > 0.0).count();
+        let most = overlaps.iter().copied().fold(0.0, f64::max);
+        assert!((1..12).contains(&pointed), "{overlaps:?}");
+        let [first, wider] = [first, wider].map(|value| format!("{value} mm"));
+        let set = [("first", &*first), ("wider", &*wider), ("s.slope", "30 deg")];
+        let told = Asked::new(SPEC, "slotted_disc", &set).refused();
+        let begin = format!("{pointed} of the 12 teeth of `disc` are pointed below the tip, and the others are not");
+        assert!(told.contains(&begin), "{told}");
+        let by = format!("their flanks overlap by up to {most:.4} mm at `tip`");
+        assert!(told.contains(&by), "{told}, not {most}");
+    }
+    // from 5.5 mm on all are, and the highest edge lies between the first two slots
+    let set = [("first", "5.5 mm"), ("wider", "0.02 mm"), ("s.slope", "30 deg")];
+    let (body, mesh) = Asked::new(SPEC, "slotted_disc", &set).only();
+    assert_eq!(euler_characteristic(&mesh), 0);
+    let (mut low, mut high) = (35.0, tip);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if angle_at(middle, 5.5) + angle_at(middle, 5.52) < pitch { low = middle } else { high = middle }
+    }
+    let found = body.gauges.tip_diameter_mm.expect("round");
+    // charts are within 1e-8 mm
+    assert!((0.5 * found - low).abs() < 2e-8, "{found} {low}");
+}

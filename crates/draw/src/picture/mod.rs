@@ -13,6 +13,7 @@ mod camera;
 mod chart;
 mod contact;
 mod contours;
+mod convex;
 mod error;
 mod figure;
 mod font;

@@ -108,8 +108,10 @@ pub(super) fn shaded(base: Colour, normal: Vector) -> Colour {
 impl Colour {
     /// As `#rrggbb`.
     pub(super) fn hex(self) -> String {
-        let [r, g, b] = self.0;
-        format!("#{r:02x}{g:02x}{b:02x}")
+        let digits = self.0.into_iter().flat_map(|byte| [byte >> 4, byte & 15]);
+        // of each face of a picture: general formatting takes longer
+        let letters = digits.map(|digit| char::from(if digit < 10 { b'0' + digit } else { b'a' + digit - 10 }));
+        std::iter::once('#').chain(letters).collect()
     }
 
     /// The colour mixed with a share of another.

@@ -5,6 +5,7 @@ use tiny_skia::{Color, FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pi
 use ttf_parser::OutlineBuilder;
 
 use super::Picture;
+use super::convex::ConvexPainter;
 use super::font;
 use super::paint::{Colour, Item, Place};
 use crate::picture::PictureError;
@@ -24,11 +25,10 @@ pub(super) fn file(picture: &Picture) -> Result<Vec<u8>, PictureError> {
         let (first, end) = (top.saturating_sub(BEYOND), height.min(bottom + BEYOND));
         let mut pixels = Pixmap::new(width, end - first)?;
         pixels.fill(Color::WHITE);
-        let to_pixels = Transform::from_scale(picture.unit as f32, picture.unit as f32);
-        let to_band = to_pixels.post_translate(0.0, -(first as f32));
+        let mut brush = Brush { unit: picture.unit, top: f64::from(first), convex: ConvexPainter::default() };
         let is_seen = |[from, to]: &[f64; 2]| *from <= f64::from(bottom) && *to >= f64::from(top);
         let seen = picture.items.iter().zip(&rows).filter(|(_, rows)| is_seen(rows));
-        seen.for_each(|(item, _)| draw(item, to_band, &mut pixels));
+        seen.for_each(|(item, _)| brush.draw(item, &mut pixels));
         // three channels, as the ground is white everywhere
         let [from, to] = [top, bottom].map(|row| 4 * (row - first) as usize * width as usize);
         let own = pixels.data()[from..to].chunks_exact(4);
@@ -66,36 +66,62 @@ fn rows(item: &Item) -> [f64; 2] {
     [low - beyond, high + beyond]
 }
 
-fn draw(item: &Item, to_pixels: Transform, pixels: &mut Pixmap) {
-    match item {
-        Item::Polygon { points, fill, outline, width } => {
-            // one shape takes less than half the time of a shape and its outline
-            let whole = (fill == outline).then(|| grown(points, 0.5 * width)).flatten();
-            if let Some(path) = path_through(whole.as_deref().unwrap_or(points), true) {
-                pixels.fill_path(&path, &paint(*fill), FillRule::Winding, to_pixels, None);
-                if whole.is_none() {
-                    pixels.stroke_path(&path, &paint(*outline), &pen(*width), to_pixels, None);
+/// What paints a band of the sheet.
+struct Brush {
+    /// Pixels per sheet unit.
+    unit: f64,
+    /// The sheet's row of pixels that is the first one of the band.
+    top: f64,
+    convex: ConvexPainter,
+}
+
+impl Brush {
+    fn draw(&mut self, item: &Item, pixels: &mut Pixmap) {
+        match item {
+            Item::Polygon { points, fill, outline, width } => {
+                // one shape instead of a shape and its outline
+                let whole = (fill == outline).then(|| grown(points, 0.5 * width)).flatten();
+                if let Some(whole) = whole {
+                    self.fill_convex(&whole, *fill, pixels);
+                } else if let Some(path) = path_through(points, true) {
+                    pixels.fill_path(&path, &paint(*fill), FillRule::Winding, self.to_band(), None);
+                    pixels.stroke_path(&path, &paint(*outline), &pen(*width), self.to_band(), None);
+                }
+            }
+            Item::Line { points, colour, width } => {
+                // most are as short as the cells beside them
+                let short = if let [from, to] = points[..] { capsule(from, to, 0.5 * width) } else { None };
+                if let Some(short) = short {
+                    self.fill_convex(&short, *colour, pixels);
+                } else if let Some(path) = path_through(points, false) {
+                    pixels.stroke_path(&path, &paint(*colour), &pen(*width), self.to_band(), None);
+                }
+            }
+            Item::Text { at, size, colour, text } => {
+                let scale = font::scale(*size) as f32;
+                let to_sheet = Transform::from_row(scale, 0.0, 0.0, -scale, at[0] as f32, at[1] as f32);
+                let mut line = TextPath { builder: PathBuilder::new(), shift: 0.0 };
+                for placed in font::layout(text) {
+                    line.shift = placed.at as f32;
+                    font::outline(placed.glyph, &mut line);
+                }
+                if let Some(path) = line.builder.finish() {
+                    let transform = self.to_band().pre_concat(to_sheet);
+                    pixels.fill_path(&path, &paint(*colour), FillRule::Winding, transform, None);
                 }
             }
         }
-        Item::Line { points, colour, width } => {
-            if let Some(path) = path_through(points, false) {
-                pixels.stroke_path(&path, &paint(*colour), &pen(*width), to_pixels, None);
-            }
-        }
-        Item::Text { at, size, colour, text } => {
-            let scale = font::scale(*size) as f32;
-            let to_sheet = Transform::from_row(scale, 0.0, 0.0, -scale, at[0] as f32, at[1] as f32);
-            let mut line = TextPath { builder: PathBuilder::new(), shift: 0.0 };
-            for placed in font::layout(text) {
-                line.shift = placed.at as f32;
-                font::outline(placed.glyph, &mut line);
-            }
-            if let Some(path) = line.builder.finish() {
-                let transform = to_pixels.pre_concat(to_sheet);
-                pixels.fill_path(&path, &paint(*colour), FillRule::Winding, transform, None);
-            }
-        }
+    }
+
+    fn fill_convex(&mut self, points: &[Place], colour: Colour, pixels: &mut Pixmap) {
+        let to_band = |[x, y]: &Place| [x * self.unit, y * self.unit - self.top];
+        let points: Vec<Place> = points.iter().map(to_band).collect();
+        self.convex.fill(&points, colour, pixels);
+    }
+
+    fn to_band(&self) -> Transform {
+        let unit = self.unit as f32;
+        Transform::from_scale(unit, unit).post_translate(0.0, -self.top as f32)
     }
 }
 
@@ -123,6 +149,17 @@ fn grown(points: &[Place], by: f64) -> Option<Vec<Place>> {
         [beside(before, cut), beside(after, -cut)]
     };
     Some((0..count).flat_map(corner).collect())
+}
+
+/// What is no farther from a line than `by`, its round ends with a corner each 45 degrees; nothing of a line without length.
+fn capsule(from: Place, to: Place, by: f64) -> Option<Vec<Place>> {
+    const HALF: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    const END: [Place; 5] = [[0.0, -1.0], [HALF, -HALF], [1.0, 0.0], [HALF, HALF], [0.0, 1.0]];
+    let [x, y] = direction(from, to)?;
+    let end = |[u, v]: Place, side: f64| {
+        END.map(|[on, aside]| [u + side * by * (on * x - aside * y), v + side * by * (on * y + aside * x)])
+    };
+    Some([end(to, 1.0), end(from, -1.0)].concat())
 }
 
 fn direction(from: Place, to: Place) -> Option<Place> {
@@ -186,6 +223,21 @@ impl OutlineBuilder for TextPath {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_short_line_has_its_width_and_round_ends() {
+        let capsule = capsule([3.0, 2.0], [6.0, 6.0], 1.5).expect("it has a length");
+        let near = |[x, y]: &Place| {
+            let along = (0.6 * (x - 3.0) + 0.8 * (y - 2.0)).clamp(0.0, 5.0);
+            (x - 3.0 - 0.6 * along).hypot(y - 2.0 - 0.8 * along)
+        };
+        assert!(capsule.len() == 10 && capsule.iter().all(|place| (near(place) - 1.5).abs() < 1e-12), "{capsule:?}");
+        let turn = |k: usize| {
+            let [a, b, c] = [0, 1, 2].map(|step| capsule[(k + step) % 10]);
+            (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0])
+        };
+        assert!((0..10).all(|k| turn(k) > 0.0), "it is convex");
+    }
 
     #[test]
     fn a_square_grows_on_all_sides_whichever_way_round_it_is() {

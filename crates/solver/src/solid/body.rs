@@ -41,7 +41,9 @@ pub enum BodyFault {
         overlap: f64,
         /// How far that is from begin to end of the spaces, as a share.
         share: f64,
-        /// Whether they do all along the teeth.
+        /// Of the teeth that differ from each other, how many are pointed, and how many there are.
+        teeth: [usize; 2],
+        /// Whether all are, all along.
         is_whole: bool,
     },
     /// Neighbouring spaces run into each other below the tip.
@@ -159,12 +161,13 @@ impl Body {
     fn checked(self) -> Result<Body, BodyFault> {
         let shares = Body::looks();
         let across = vec![shares.clone(); self.charts().len()];
-        for tooth in 0..self.spaces.len() {
-            let [own, next] = self.tooth_lines(tooth, &across, &shares);
-            self.check_tips([&own, &next], &shares)?;
-            self.check_folds([&own, &next])?;
-            self.check_crossings(&own)?;
-            for (line, next) in own.iter().zip(&next) {
+        let teeth: Vec<[Vec<Vec<Polar>>; 2]> =
+            (0..self.spaces.len()).map(|tooth| self.tooth_lines(tooth, &across, &shares)).collect();
+        self.check_tips(&teeth, &shares)?;
+        for (tooth, [own, next]) in teeth.iter().enumerate() {
+            self.check_folds([own, next])?;
+            self.check_crossings(own)?;
+            for (line, next) in own.iter().zip(next) {
                 let last = line.len() - 1;
                 for i in 1..line.len() / 2 {
                     let overlap = -self.tooth_width(next[i], line[last - i]);
@@ -271,15 +274,24 @@ impl Body {
         }
     }
 
-    fn check_tips(&self, [own, next]: [&[Vec<Polar>]; 2], shares: &[f64]) -> Result<(), BodyFault> {
+    /// All teeth have lands, or end in edges; where spaces differ some may be pointed and others not.
+    fn check_tips(&self, teeth: &[[Vec<Vec<Polar>>; 2]], shares: &[f64]) -> Result<(), BodyFault> {
         if self.has_edge {
             return Ok(());
         }
-        let overlaps = own.iter().zip(next).map(|(line, next)| -self.tooth_width(next[0], line[line.len() - 1]));
-        let overlaps: Vec<(f64, f64)> = overlaps.zip(shares.iter().copied()).collect();
-        let is_whole = overlaps.iter().all(|(overlap, _)| *overlap >= 0.0);
-        match overlaps.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
-            Some((overlap, share)) if overlap >= 0.0 => Err(BodyFault::Pointed { overlap, share, is_whole }),
+        let overlaps = |[own, next]: &[Vec<Vec<Polar>>; 2]| -> Vec<f64> {
+            own.iter().zip(next).map(|(line, next)| -self.tooth_width(next[0], line[line.len() - 1])).collect()
+        };
+        let overlaps: Vec<Vec<f64>> = teeth.iter().map(overlaps).collect();
+        let overlap_at = |(k, overlap): (usize, &f64)| (*overlap, shares[k]);
+        let all = overlaps.iter().flat_map(|of_tooth| of_tooth.iter().enumerate().map(overlap_at));
+        match all.max_by(|a, b| a.0.total_cmp(&b.0)) {
+            Some((overlap, share)) if overlap >= 0.0 => {
+                let is_pointed = |of_tooth: &&Vec<f64>| of_tooth.iter().any(|overlap| *overlap >= 0.0);
+                let is_whole = overlaps.iter().flatten().all(|overlap| *overlap >= 0.0);
+                let teeth = [overlaps.iter().filter(is_pointed).count(), overlaps.len()];
+                Err(BodyFault::Pointed { overlap, share, teeth, is_whole })
+            }
             _ => Ok(()),
         }
     }

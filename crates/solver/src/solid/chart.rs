@@ -85,7 +85,7 @@ impl Chart {
 
     /// The position at two shares, mm.
     pub fn at(&self, shares: [f64; 2]) -> [f64; 3] {
-        self.summed([0, 1].map(|k| Basis::at(self.counts[k], shares[k]).values))
+        self.summed([0, 1].map(|k| Chart::weights(self.counts[k], shares[k])))
     }
 
     /// Position and its derivatives by both shares, mm.
@@ -113,9 +113,10 @@ impl Chart {
 
     /// Positions on a lattice of shares, row by row, mm.
     pub fn lattice(&self, across: &[f64], along: &[f64]) -> Vec<[f64; 3]> {
-        let along: Vec<Vec<f64>> = along.iter().map(|w| Basis::at(self.counts[1], *w).values).collect();
+        let [rows, columns] = self.counts.map(Chart::shares);
+        let along: Vec<Vec<f64>> = along.iter().map(|w| Chart::weights_at(&columns, *w)).collect();
         let row = |u: &f64| {
-            let weights = Basis::at(self.counts[0], *u).values;
+            let weights = Chart::weights_at(&rows, *u);
             // the row's points first, then the places on it
             let row: Vec<[f64; 3]> = (0..self.counts[1])
                 .map(|j| weighted((0..self.counts[0]).map(|i| (weights[i], self.points[i * self.counts[1] + j]))))

@@ -109,18 +109,31 @@ pub(crate) fn faulty(solid: &Solid, (blank, names, has_edge): (&Blank, &[&str], 
     let of = &solid.name;
     let from = if blank::arrangement(solid).is_closed() { "the axis" } else { "x = 0" };
     match fault {
-        BodyFault::Pointed { overlap, share, .. } => refused(
-            solid,
-            format!(
-                "the teeth of `{of}` are pointed below the tip: their flanks overlap by {} at `{}`, {:.0} % of the way from `{}` to `{}`",
-                length(overlap),
-                name(blank.ends[1]),
-                100.0 * share,
-                name(blank.ends[0]),
-                name(blank.ends[2])
-            ),
-            &["a lower tip of the blank, or narrower spaces"],
-        ),
+        BodyFault::Pointed { overlap, share, teeth: [pointed, all], .. } => {
+            let is_mixed = pointed < all;
+            let which = if is_mixed { format!("{pointed} of the {all} teeth") } else { "the teeth".to_string() };
+            let (verb, most) = if is_mixed && pointed == 1 { ("is", "its") } else { ("are", "their") };
+            let up_to = if is_mixed && pointed > 1 { "up to " } else { "" };
+            let mut ways = vec!["a lower tip of the blank, or narrower spaces"];
+            if is_mixed {
+                ways.push(
+                    "or a higher tip of the blank, or wider spaces, with which all teeth are pointed: they then end in edges",
+                );
+            }
+            refused(
+                solid,
+                format!(
+                    "{which} of `{of}` {verb} pointed below the tip{}: {most} flanks overlap by {up_to}{} at `{}`, {:.0} % of the way from `{}` to `{}`",
+                    if is_mixed { ", and the others are not" } else { "" },
+                    length(overlap),
+                    name(blank.ends[1]),
+                    100.0 * share,
+                    name(blank.ends[0]),
+                    name(blank.ends[2])
+                ),
+                &ways,
+            )
+        }
         BodyFault::Overlap { overlap, rho } => refused(
             solid,
             format!("the spaces of `{of}` run into each other by {} at {rho:.3} mm from {from}", length(overlap)),

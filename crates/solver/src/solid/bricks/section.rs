@@ -169,17 +169,23 @@ fn mixed_shares(row: &[Polar], arrangement: Arrangement) -> Vec<f64> {
 }
 
 /// Unit normals into the material along a line across a space, `[along the circle, towards a place below]`.
+///
+/// Those of the parabola through a place and its neighbours, in which the nearer one counts more: where a short root follows a fillet, the mean of
+/// both directions leans by far more than the root is long. At a corner lengths count for nothing, since both sides go on straight.
 pub(crate) fn normals(line: &[Polar], below: [f64; 2], arrangement: Arrangement) -> Vec<[f64; 2]> {
     let down = direction(line[0], below);
     let step = |from: Polar, to: Polar| {
         let x = arrangement.arc(0.5 * (from[1] + to[1])) * (to[2] - from[2]);
-        unit([x, (to[0] - from[0]) * down[0] + (to[1] - from[1]) * down[1]])
+        let y = (to[0] - from[0]) * down[0] + (to[1] - from[1]) * down[1];
+        (x.hypot(y), unit([x, y]))
     };
-    let steps: Vec<[f64; 2]> = line.windows(2).map(|pair| step(pair[0], pair[1])).collect();
+    let steps: Vec<(f64, [f64; 2])> = line.windows(2).map(|pair| step(pair[0], pair[1])).collect();
     let last = steps.len() - 1;
     let normal = |k: usize| {
-        let (before, after) = (steps[k.saturating_sub(1)], steps[k.min(last)]);
-        let [x, y] = unit([before[0] + after[0], before[1] + after[1]]);
+        let ((length, before), (next, after)) = (steps[k.saturating_sub(1)], steps[k.min(last)]);
+        let straight = (before[0] * after[0] + before[1] * after[1]).max(0.0);
+        let share = if length > 0.0 && next > 0.0 { (length / next).powf(straight) } else { 1.0 };
+        let [x, y] = unit([before[0] + share * after[0], before[1] + share * after[1]]);
         [-y, x]
     };
     (0..line.len()).map(normal).collect()
