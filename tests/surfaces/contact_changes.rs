@@ -267,3 +267,24 @@ fn all_settings_change_a_contact_as_solving_again_does() {
         }
     }
 }
+
+/// Shares of one parameter add up, wherever they stand.
+#[test]
+fn shares_of_a_parameter_add_up() {
+    let graph = Graph::new();
+    let job = job(&graph, "specs/pairs/bevel_19x62.chain", &[]);
+    let all = causes(&job);
+    let named = |name: &str| all.iter().position(|of| of.name == name).expect("a setting");
+    let (angle, ratio) = (named("pinion_cutter.blade_angle"), named("p.ratio_of_roll"));
+    let open: Vec<Expr<'_>> = all.iter().map(|of| of.variable).collect();
+    let at = with_pair_in(&job, &[], |pair, points| {
+        ContactProblem::new(pair).expect("all bound").find(0.05, points).expect("they touch")
+    });
+    with_pair_in(&job, &open, |pair, _| {
+        let problem = ContactProblem::new(pair).expect("all bound");
+        let change = |of: &[(usize, f64)]| problem.change(&at, of, false).expect("a regular contact");
+        let once = change(&[(angle, 1.0), (ratio, 0.5)]);
+        assert_eq!(change(&[(angle, 0.25), (ratio, 0.5), (angle, 0.75)]), once);
+        assert_ne!(change(&[(angle, 0.25), (ratio, 0.5)]), once);
+    });
+}

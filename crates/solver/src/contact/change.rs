@@ -63,7 +63,7 @@ impl ContactChange {
 }
 
 impl ContactProblem {
-    /// What a change of parameters changes, each by its number with its share in the change: at the vertex of the lag, if the point is it
+    /// What a change of parameters changes, each by its number with its share in the change, which shares of one parameter add up to: at the vertex of the lag, if the point is it
     /// and stays it, else at the same roll position. `None` where the contact is singular.
     pub fn change(&self, at: &ContactPoint, of: &[(usize, f64)], is_vertex: bool) -> Option<ContactChange> {
         let (by_roll, mut changes) = self.changes(at, &[of.to_vec()])?;
@@ -110,7 +110,8 @@ impl ContactProblem {
         rolled: &Rolled,
     ) -> Option<ContactChange> {
         let values = at.all_unknowns().into_iter().chain(self.given(at.roll));
-        let share = |k: usize| of.iter().find(|(parameter, _)| *parameter == k).map_or(0.0, |(_, share)| *share);
+        // a parameter that is listed more than once changes by the sum of its shares
+        let share = |k: usize| of.iter().filter(|(parameter, _)| *parameter == k).map(|(_, share)| share).sum::<f64>();
         let speeds = rates.unknowns.iter().copied().chain([roll]).chain((0..self.values.len()).map(share));
         let inputs: Vec<f64> = values.zip(speeds).flat_map(|(value, speed)| [value, speed]).collect();
         let mut outputs = vec![0.0; 2 * self.state.output_count()];
