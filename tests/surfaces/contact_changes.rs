@@ -116,9 +116,8 @@ fn effects(
     numbers: &[(&str, ContactNumber)],
 ) -> Vec<Vec<f64>> {
     let of = |number: &ContactNumber| number.of(at).expect("it is there");
-    // off by a unit is a residual of 1: what need not hold exactly weighs 1e-4
-    let wish =
-        |(_, number): &(&str, ContactNumber)| ContactWish { of: *number, wanted: of(number), within: Some(1e-4) };
+    // off by a unit is a residual of 1
+    let wish = |(_, number): &(&str, ContactNumber)| ContactWish { of: *number, wanted: of(number), within: Some(1.0) };
     let everywhere = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
     let unit = |of: &Cause<'_>| ScaledUnknown { start: of.value, scale: 1.0, range: everywhere };
     let synthesis = ContactSynthesis {
