@@ -42,7 +42,7 @@ pub fn with_contact<'g, R>(
     with_values(job, contact, (&given, Vec::new()), has_edges, use_pair)
 }
 
-/// The first contact of a job as it is mounted, without edges and with parameters of the job open.
+/// The first contact of a job as it is mounted, without edges and with parameters of the job and axes of the pair's machine open.
 ///
 /// # Panics
 /// If the job has no contact, or a flank of it no sample.
@@ -52,9 +52,11 @@ pub fn with_pair_in<'g, R>(
     use_pair: impl FnOnce(&RollingPair<'_, 'g>, [&[SurfacePoint]; 2]) -> R,
 ) -> R {
     let contact = &job.contacts[0];
-    let mounted = contact.errors.iter().map(|axis| (axis.variable, axis.variable.graph().constant(0.0)));
+    let closed = contact.errors.iter().map(|axis| axis.variable).filter(|axis| !open.contains(axis));
+    let mounted = closed.map(|axis| (axis, axis.graph().constant(0.0)));
     let given: Vec<_> = mounted.chain(job.bindings_beside(open)).collect();
-    let value = |variable: &Expr<'g>| job.parameters.iter().find(|of| of.variable == *variable).expect("open").value;
+    let value =
+        |variable: &Expr<'g>| job.parameters.iter().find(|of| of.variable == *variable).map_or(0.0, |of| of.value);
     let parameters = open.iter().map(|variable| (*variable, value(variable))).collect();
     with_values(job, contact, (&given, parameters), false, use_pair)
 }

@@ -321,3 +321,127 @@ fn what_is_followed_by_what_varies_is_told() {
     assert!(other.contains("changes nothing that wish wants: it stays"), "{other}");
     assert!(!told(&["shift"]).contains("changes nothing"));
 }
+
+const ROLL: &str = "p.modified_roll_2c";
+
+/// Wishes that fight are named, no more and no fewer: without any one of them the others are met. A wish that is not met by itself is told alone, and
+/// so is the end of a range that holds it.
+#[test]
+fn wishes_that_stand_against_each_other_are_named() {
+    let (path, error) = ("path: 8.8 deg", "transmission_error: 28 arcsec");
+    let (near, place) = ("lengthwise: about(0.35, 0.2)", "lengthwise: 0.4");
+    let cases: [(&[&str], &[&str], &str, &[&str]); 4] = [
+        (&[path, error], &[ROLL], "against: path and transmission_error: each", &[path, error]),
+        // what is met anyway does not take part
+        (&[near, path, error], &[ROLL], "against: path and transmission_error: each", &[path, error]),
+        (
+            &[place, path, error],
+            &[ROLL, "p.ratio_of_roll"],
+            "against: lengthwise, path, transmission_error: without any one",
+            &[place, path, error],
+        ),
+        (&["lengthwise: 0.5", error], &["shift"], "against: no search meets lengthwise", &["lengthwise: 0.5"]),
+    ];
+    for (wishes, vary, told, against) in cases {
+        let found = solved(&wishes.join(", "), vary).expect("a result");
+        let reasons = format!("{:?}", found.not_done);
+        assert!(reasons.contains(told), "{wishes:?}: {reasons}");
+        assert_eq!(reasons.contains("bounds: shift"), vary.contains(&"shift"), "{reasons}");
+        let is_met =
+            |of: &[&str]| solved(&of.join(", "), vary).expect("a result").conditions.iter().all(|of| of.is_met);
+        assert!(!is_met(against), "{against:?}");
+        for left in 0..against.len() {
+            let others: Vec<&str> = against.iter().enumerate().filter(|(k, _)| *k != left).map(|(_, of)| *of).collect();
+            assert!(others.is_empty() || is_met(&others), "{others:?}");
+        }
+    }
+}
+
+/// Path in degrees and height of the error in arcseconds where one setting has a value.
+fn with_roll(value: f64) -> [f64; 2] {
+    let [_, _, path, _, height] = numbers(&rolled(vec![(ROLL.to_string(), format!("{value:?}"))])).expect("they touch");
+    [path, (1e-6 * height).to_degrees() * 3600.0]
+}
+
+/// Where wishes cannot all be met the settings are those with the least squares of what is off, each by how far it may be off, or by what is worth a
+/// millimetre where that is not said: with the setting a little greater or smaller, solved by the whole contact, more is left.
+#[test]
+fn what_cannot_be_met_is_met_by_least_squares() {
+    let wanted = [8.8, 28.0];
+    // 1 mm is worth 0.1 rad of a path, and all of an error
+    let cases = [
+        ("path: about(8.8 deg, 0.1 deg), transmission_error: about(28 arcsec, 0.1 arcsec)", [0.1, 0.1]),
+        ("path: 8.8 deg, transmission_error: 28 arcsec", [0.1f64.to_degrees(), 28.0]),
+    ];
+    for (wish, scales) in cases {
+        let found = solved(wish, &[ROLL]).expect("a result");
+        let value = found.settings[0].new;
+        let left = |by: f64| {
+            let there = with_roll(value + by);
+            (0..2).map(|k| ((there[k] - wanted[k]) / scales[k]).powi(2)).sum::<f64>()
+        };
+        let step = 2e-4;
+        let [before, at, after] = [-step, 0.0, step].map(left);
+        assert!(at < before && at < after, "{wish}: {before} {at} {after}");
+        // the slope is zero: what is left is the third derivative's share
+        assert!((after - before).abs() < 0.01 * (before + after - 2.0 * at), "{wish}: {before} {at} {after}");
+        // what is told as reached is a vertex of the pair: solving it anew finds the same
+        for of in &found.conditions {
+            let (reached, checked) = (of.reached.expect("a contact"), of.checked.expect("a contact"));
+            assert!((reached - checked).abs() < 1e-6 * reached.abs(), "{wish}: {of:?}");
+        }
+        let told = format!("{:?}", found.not_done);
+        assert!(told.contains("least squares: nearest to all of it these settings leave path -0."), "{told}");
+    }
+}
+
+/// Where the least squares leave a number farther off than it may be, and other settings leave all of them near enough, these are found.
+#[test]
+fn all_are_near_enough_where_that_can_be() {
+    let (value, step, within) = (0.085, 1e-3, [0.01, 0.03]);
+    let [before, at, after] = [-step, 0.0, step].map(|by| with_roll(value + by));
+    let slope = [0, 1].map(|k| (after[k] - before[k]) / (2.0 * step) / within[k]);
+    // at that value both are 0.95 of what they may be off, to such sides that the steeper one draws it away
+    let steep = usize::from(slope[1].abs() > slope[0].abs());
+    let side = |k: usize| if k == steep { -slope[k].signum() } else { slope[k].signum() };
+    let wanted = [0, 1].map(|k| at[k] - 0.95 * side(k) * within[k]);
+    let shift = -0.95 * (0..2).map(|k| slope[k] * side(k)).sum::<f64>() / slope.iter().map(|of| of * of).sum::<f64>();
+    let farthest = (0..2).map(|k| (0.95 * side(k) + slope[k] * shift).abs()).fold(0.0, f64::max);
+    assert!(farthest > 1.02, "least squares alone are near enough: {farthest}");
+    let [path, error] = wanted;
+    let wish = format!(
+        "path: about({path:?} deg, {:?} deg), transmission_error: about({error:?} arcsec, {:?} arcsec)",
+        within[0], within[1]
+    );
+    let found = solved(&wish, &[ROLL]).expect("a result");
+    assert!(found.conditions.iter().all(|of| of.is_met), "{:?} {:?}", found.conditions, found.not_done);
+}
+
+/// What is to hold exactly does, however far off the others are by how far they may be.
+#[test]
+fn what_is_exact_holds_beside_what_is_far_off() {
+    let wish = "z: 21.8 mm, rho: 106.4 mm, path: about(12 deg, 0.001 deg)";
+    let found = solved(wish, &["p.radial_distance", "p.ratio_of_roll"]).expect("a result");
+    let [z, rho, path] = &found.conditions[..] else { panic!("{:?}", found.conditions) };
+    assert!(z.is_met && rho.is_met && !path.is_met, "{:?}", found.conditions);
+    assert!(found.not_done[0].message.ends_with("is not met: path"), "{:?}", found.not_done);
+}
+
+/// Settings that are left free change least beside numbers that need not hold exactly as well: where these are met, as beside exact ones.
+#[test]
+fn settings_change_least_beside_what_need_not_hold() {
+    let vary = SETTINGS.map(|(name, ..)| name);
+    let [exact, about, mixed] = [
+        "lengthwise: 0.4, path: 9 deg",
+        "lengthwise: about(0.4, 0.01), path: about(9 deg, 2 deg)",
+        "lengthwise: 0.4, path: about(9 deg, 2 deg)",
+    ]
+    .map(|wish| solved(wish, &vary).expect("a result"));
+    for other in [about, mixed] {
+        assert!(other.conditions.iter().all(|of| of.is_met), "{:?}", other.conditions);
+        for (of, to) in other.settings.iter().zip(&exact.settings) {
+            // least changes are known to 1e-6 of a scale: 0.1 mm, 10 arcminutes, a hundredth
+            assert!((of.new - to.new).abs() < 1e-6, "{of:?} {to:?}");
+        }
+    }
+}

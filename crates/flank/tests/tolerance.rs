@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flank::{
-    Buffers, ContactRequest, ContactResult, DeviationRequest, Disk, Failure, JobSelection, MountingError, Project,
-    ToleranceRequest, ToleranceResult, ToleratedAmount, Unwatched, contact, deviation, tolerance,
+    Buffers, CauseKind, ContactRequest, ContactResult, DeviationRequest, DeviationResult, Disk, Failure, JobSelection,
+    MountingError, Project, ToleranceRequest, ToleranceResult, ToleratedAmount, Unwatched, contact, deviation,
+    tolerance,
 };
 
 fn spec(name: &str) -> PathBuf {
@@ -42,6 +43,26 @@ const FIVE: [(&str, f64, &str); 5] = [
     ("c.blade_angle", 0.5, "arcmin"),
 ];
 
+/// How far a surface of the job `off` lies off that of the job `nominal`.
+fn deviated(jobs: JobSelection, surface: &str) -> DeviationResult {
+    let request = DeviationRequest {
+        jobs,
+        surface: format!("off.{surface}"),
+        reference: Some(format!("nominal.{surface}")),
+        reference_jobs: None,
+        measured: None,
+        rows: None,
+        columns: None,
+        margin: None,
+        no_align: false,
+        out: std::env::temp_dir(),
+        format: vec![],
+        no_picture: true,
+        evaluator: flank::EvaluatorOptions::default(),
+    };
+    deviation(&request, &Unwatched).expect("deviations")
+}
+
 /// Of slopes, crownings and bias the standard deviation over 300 cases, each solved anew by `flank deviation`: within three standard errors,
 /// 12 %, of the linear one.
 #[test]
@@ -76,22 +97,7 @@ fn linear_tolerances_are_those_of_random_cases() {
             (format!("off.{name}"), format!("{:?} {shown}", now + off))
         });
         let jobs = JobSelection { set: set.to_vec(), ..both.clone() };
-        let request = DeviationRequest {
-            jobs,
-            surface: "off.concave".to_string(),
-            reference: Some("nominal.concave".to_string()),
-            reference_jobs: None,
-            measured: None,
-            rows: None,
-            columns: None,
-            margin: None,
-            no_align: false,
-            out: std::env::temp_dir(),
-            format: vec![],
-            no_picture: true,
-            evaluator: flank::EvaluatorOptions::default(),
-        };
-        let found = deviation(&request, &Unwatched).expect("deviations");
+        let found = deviated(jobs, "concave");
         let [across, along] = found.directions.map(|of| of.expect("a parabola"));
         assert!(across.direction.contains("root"), "{}", across.direction);
         let numbers =
@@ -106,52 +112,152 @@ fn linear_tolerances_are_those_of_random_cases() {
     }
 }
 
-fn rolled(set: Vec<(String, String)>, errors: Vec<(String, MountingError)>) -> ContactResult {
+fn rolled(pair: &str, set: Vec<(String, String)>, errors: Vec<(String, MountingError)>) -> ContactResult {
     let request = ContactRequest {
         errors,
         positions: 12,
         no_picture: true,
         format: vec![],
-        ..ContactRequest::new(JobSelection { set, ..opened("pairs/bevel_19x62.chain") })
+        ..ContactRequest::new(JobSelection { set, ..opened(&format!("pairs/{pair}.chain")) })
     };
     let mut found = Vec::new();
     contact(&request, &Unwatched, &mut |of| found.push(of)).expect("a contact");
     found.remove(0)
 }
 
-/// The error in the middle and its parabola over a pitch, against central differences of `flank contact`; the mean of four shifts of
-/// ten thousandths of a millimetre leaves 1e-4 of them.
+/// A value as a spec has it.
+fn written(value: f64, unit: &str) -> String {
+    format!("{value:?} {unit}").trim_end().to_string()
+}
+
+/// What a number changes by with a cause, from central differences of two steps so that their square cancels; and how far that may be off: a
+/// hundredth of what the steps differ by, and rounding of solved points, 1e-6 um, over the step.
+fn differenced<const N: usize>(step: f64, numbers: impl Fn(f64) -> [f64; N]) -> [(f64, f64); N] {
+    let [a, b, c, d] = [-step, -0.5 * step, 0.5 * step, step].map(numbers);
+    std::array::from_fn(|k| {
+        let (wide, fine) = ((d[k] - a[k]) / (2.0 * step), (c[k] - b[k]) / step);
+        ((4.0 * fine - wide) / 3.0, 1e-2 * (fine - wide).abs() + 1e-6 / step)
+    })
+}
+
+/// Slopes, crownings, bias and place of bevel, hypoid and helical flanks change with a setting as `flank deviation` says of flanks with the
+/// setting a little greater and smaller.
 #[test]
-fn contacts_scatter_as_their_differences_say() {
-    let request = ToleranceRequest {
-        scatter: vec![
-            ("m.E".to_string(), ToleratedAmount::Length(1e-2)),
-            ("radial_distance".to_string(), ToleratedAmount::Length(1e-2)),
-        ],
-        ..ToleranceRequest::new(opened("pairs/bevel_19x62.chain"), "pinion_concave")
-    };
-    // two settings end so
-    let Err(Failure::Input(reason)) = tolerance(&request, &Unwatched) else { panic!("it is not said which") };
-    assert!(reason.contains("several settings end with `radial_distance`"), "{reason}");
-    let scatter = vec![request.scatter[0].clone(), ("p.radial_distance".to_string(), request.scatter[1].1)];
-    let told = tolerance(&ToleranceRequest { scatter, ..request }, &Unwatched).expect("tolerances");
-    let step = 1e-3;
-    let axis = |by: f64| rolled(vec![], vec![("m.E".to_string(), MountingError::Length(by))]);
-    let setting = |by: f64| rolled(vec![("p.radial_distance".to_string(), format!("{:?} mm", 99.808 + by))], vec![]);
-    let pitch = 360.0 / 19.0;
-    let numbers = |of: &ContactResult| {
-        let middle = of.middle.as_ref().expect("they touch");
-        [1e6 * middle.error.to_radians(), middle.parabola.abs() * pitch * pitch / 8.0]
-    };
-    let both: [(usize, &dyn Fn(f64) -> ContactResult); 2] = [(0, &setting), (1, &axis)];
-    for (cause, at) in both {
-        let [low, high] = [-step, step].map(|by| numbers(&at(by)));
-        for (k, name) in ["drive_side.error", "drive_side.transmission_error"].into_iter().enumerate() {
-            let difference = (high[k] - low[k]) / (2.0 * step) * 1e-2;
-            let exact = deviation_of(&told, name).changes[cause];
-            assert!((exact - difference).abs() < 1e-4 * difference.abs().max(0.1), "{name}: {exact} and {difference}");
+fn flanks_change_as_their_differences_say() {
+    let jobs = [
+        ("bevel", "pinion_19x62", "concave", &["m.radial_distance", "m.machine_root_angle", "m.ratio_of_roll"][..]),
+        ("pairs", "hypoid_pair", "gear_convex", &["g.work_offset", "c.blade_angle"]),
+        ("hobbing", "helical_gear", "lower_flank", &["h.normal_pressure_angle", "helix_angle"]),
+    ];
+    for (folder, job, surface, names) in jobs {
+        let scatter = |name: &&str| {
+            let (told, unit) = (name.to_string(), if name.ends_with("_angle") { "angle" } else { "length" });
+            let amount = match (unit, name.ends_with("ratio_of_roll")) {
+                (_, true) => ToleratedAmount::Number(1e-4),
+                ("angle", _) => ToleratedAmount::Angle(1e-4),
+                _ => ToleratedAmount::Length(1e-3),
+            };
+            (told, amount)
+        };
+        let request = ToleranceRequest {
+            scatter: names.iter().map(scatter).collect(),
+            ..ToleranceRequest::new(opened(&format!("{folder}/{job}.chain")), surface)
+        };
+        let told = tolerance(&request, &Unwatched).expect("tolerances");
+        let text = format!("use \"{job}.chain\"\njob nominal = {job}()\njob off = {job}()\n");
+        let both = spec(&format!("{folder}/both.chain"));
+        let files = Buffers::over(Arc::new(Disk)).with(&both, text);
+        let both = JobSelection { project: Project::open(both, Arc::new(files)), job: None, set: vec![] };
+        for (at, cause) in told.causes.iter().enumerate() {
+            let numbers = |by: f64| {
+                let set = vec![(format!("off.{}", cause.name), written(cause.now + by * cause.scatter, &cause.unit))];
+                let found = deviated(JobSelection { set, ..both.clone() }, surface);
+                let [across, along] = found.directions.map(|of| of.expect("a parabola"));
+                let (slopes, crownings) = ([across.slope_um, along.slope_um], [across.crowning_um, along.crowning_um]);
+                // it lies as far off as it is turned back
+                let place = -1e3 * found.turn_mm.expect("a turn");
+                [slopes[0], slopes[1], crownings[0], crownings[1], found.bias_um.expect("a bias"), place]
+            };
+            let of = [
+                "slope_profilewise",
+                "slope_lengthwise",
+                "crowning_profilewise",
+                "crowning_lengthwise",
+                "bias",
+                "position",
+            ];
+            for (name, (known, off)) in of.into_iter().zip(differenced(1.0, numbers)) {
+                let exact = deviation_of(&told, name).changes[at];
+                assert!(
+                    (exact - known).abs() < 1e-6 * known.abs() + off,
+                    "{job} {} {name}: {exact} {known} {off}",
+                    cause.name
+                );
+            }
         }
     }
+}
+
+/// Where the middle of a contact lies, the error there and its parabola over a pitch change with settings and axes of bevel, hypoid and worm
+/// pairs as `flank contact` says of contacts with these a little greater and smaller.
+#[test]
+fn contacts_change_as_their_differences_say() {
+    // 1e-5 of an axis or a setting is far from what makes the contact another one
+    let pairs = [
+        ("bevel_19x62", "pinion_concave", 19.0, &["m.E", "m.S", "p.radial_distance", "pinion_cutter.blade_angle"][..]),
+        ("hypoid_pair", "pinion_concave", 13.0, &["m.P", "offset", "g.machine_root_angle"]),
+        ("worm_and_wheel", "worm_flank", 1.0, &["m.G", "module"]),
+    ];
+    for (pair, surface, teeth, names) in pairs {
+        let is_angle = |name: &str| name.ends_with("_angle") || name == "m.S";
+        let amount = |name: &&str| match is_angle(name) {
+            true => (name.to_string(), ToleratedAmount::Angle(1e-4)),
+            false => (name.to_string(), ToleratedAmount::Length(2e-3)),
+        };
+        let request = ToleranceRequest {
+            scatter: names.iter().map(amount).collect(),
+            ..ToleranceRequest::new(opened(&format!("pairs/{pair}.chain")), surface)
+        };
+        let told = tolerance(&request, &Unwatched).expect("tolerances");
+        for (at, cause) in told.causes.iter().enumerate() {
+            let numbers = |by: f64| {
+                let is_axis = cause.kind == CauseKind::Mounting;
+                let off = by * cause.scatter;
+                let error = if is_angle(&cause.name) {
+                    MountingError::Angle(off.to_radians())
+                } else {
+                    MountingError::Length(off)
+                };
+                let found = match is_axis {
+                    true => rolled(pair, vec![], vec![(cause.name.clone(), error)]),
+                    false => rolled(pair, vec![(cause.name.clone(), written(cause.now + off, &cause.unit))], vec![]),
+                };
+                let middle = found.middle.expect("they touch");
+                let pitch = 360.0 / teeth;
+                [1e6 * middle.error.to_radians(), middle.parabola.abs() * pitch * pitch / 8.0]
+            };
+            let of = ["drive_side.error", "drive_side.transmission_error"];
+            for (name, (known, off)) in of.into_iter().zip(differenced(1.0, numbers)) {
+                let exact = deviation_of(&told, name).changes[at];
+                assert!(
+                    (exact - known).abs() < 1e-6 * known.abs() + off,
+                    "{pair} {} {name}: {exact} {known} {off}",
+                    cause.name
+                );
+            }
+        }
+    }
+}
+
+/// A last part that two settings have says neither.
+#[test]
+fn a_name_that_two_settings_end_with_is_refused() {
+    let request = ToleranceRequest {
+        scatter: vec![("radial_distance".to_string(), ToleratedAmount::Length(1e-2))],
+        ..ToleranceRequest::new(opened("pairs/bevel_19x62.chain"), "pinion_concave")
+    };
+    let Err(Failure::Input(reason)) = tolerance(&request, &Unwatched) else { panic!("it is not said which") };
+    assert!(reason.contains("several settings end with `radial_distance`"), "{reason}");
 }
 
 /// Backwards: with the scatter that a budget leaves to each of them the result scatters by what was wanted.

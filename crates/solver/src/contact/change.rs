@@ -6,14 +6,9 @@
 use flank_expr::TaylorEvaluator;
 use nalgebra::DMatrix;
 
+use crate::analysis::geometry::{curvature_change_in, tangents};
 use crate::contact::ContactProblem;
 use crate::contact::point::{ContactPoint, Member};
-
-/// The step over which the gap's curvatures are differenced, as a share of what they follow from: its square, and rounding over it, are
-/// below 1e-10.
-const STEP: f64 = 1e-5;
-/// The radius of a flank, mm, beside which changes of curvatures count, where a flank has none.
-const NEARLY_FLAT: f64 = 1e3;
 
 /// By how much a contact changes with parameters, per unit of their change. Lengths are mm, angles radians.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,7 +63,7 @@ impl ContactChange {
 }
 
 impl ContactProblem {
-    /// What a change of parameters changes, each by its number with its share in the change: at the vertex of the lag, if the point is it
+    /// What a change of parameters changes, each by its number with its share in the change, which shares of one parameter add up to: at the vertex of the lag, if the point is it
     /// and stays it, else at the same roll position. `None` where the contact is singular.
     pub fn change(&self, at: &ContactPoint, of: &[(usize, f64)], is_vertex: bool) -> Option<ContactChange> {
         let (by_roll, mut changes) = self.changes(at, &[of.to_vec()])?;
@@ -115,7 +110,8 @@ impl ContactProblem {
         rolled: &Rolled,
     ) -> Option<ContactChange> {
         let values = at.all_unknowns().into_iter().chain(self.given(at.roll));
-        let share = |k: usize| of.iter().find(|(parameter, _)| *parameter == k).map_or(0.0, |(_, share)| *share);
+        // a parameter that is listed more than once changes by the sum of its shares
+        let share = |k: usize| of.iter().filter(|(parameter, _)| *parameter == k).map(|(_, share)| share).sum::<f64>();
         let speeds = rates.unknowns.iter().copied().chain([roll]).chain((0..self.values.len()).map(share));
         let inputs: Vec<f64> = values.zip(speeds).flat_map(|(value, speed)| [value, speed]).collect();
         let mut outputs = vec![0.0; 2 * self.state.output_count()];
@@ -150,35 +146,14 @@ impl ContactProblem {
     /// Of the curvatures of the gap, where what they follow from changes so.
     fn gap_change(&self, [here, speeds]: [&[f64]; 2]) -> Option<[f64; 2]> {
         let (at, rates) = (self.members_from(here), self.members_from(speeds));
-        let fastest = at.iter().zip(&rates).map(|(at, rates)| share_changed(at, rates)).fold(0.0, f64::max);
-        if fastest == 0.0 {
-            return Some([0.0; 2]);
-        }
-        let step = STEP / fastest;
-        let gap = |step: f64| {
-            let out: Vec<f64> = here.iter().zip(speeds).map(|(value, speed)| value + step * speed).collect();
-            Some(self.gap(&self.members_from(&out))?.principal())
-        };
-        let (before, after) = (gap(-step)?, gap(step)?);
-        let change = [after.k1 - before.k1, after.k2 - before.k2].map(|change| change / (2.0 * step));
-        change.iter().all(|change| change.is_finite()).then_some(change)
+        let tangents = tangents(at[0].normal);
+        let own = |k: usize| curvature_change_in(tangents, curvature_parts(&at[k]), curvature_parts(&rates[k]));
+        let ((first, by_first), (second, by_second)) = (own(0)?, own(1)?);
+        Some(first.plus(&second).principal_change(&by_first.plus(&by_second)))
     }
 }
 
-/// The greatest share by which something changes that a flank's curvatures follow from: the normal, and what belongs to each unknown.
-/// A setting may change curvatures without moving a point.
-fn share_changed(at: &Member, rates: &Member) -> f64 {
-    let norm = |of: &DMatrix<f64>, unknown: usize| of.column(unknown).norm();
-    let share = |change: f64, whole: f64| if change == 0.0 { 0.0 } else { change / whole };
-    let steep = |of: &Member, unknown: usize| norm(&of.constraint_slopes, unknown) / norm(&at.slopes, unknown);
-    let unknowns = 0..at.slopes.ncols();
-    let steepest = unknowns.clone().map(|unknown| steep(at, unknown)).fold(0.0, f64::max);
-    let of_unknown = |unknown: usize| {
-        let slope = norm(&at.slopes, unknown);
-        let bends = norm(&at.normal_slopes, unknown) + slope / NEARLY_FLAT;
-        share(norm(&rates.slopes, unknown), slope)
-            .max(share(norm(&rates.normal_slopes, unknown), bends))
-            .max(share(steep(rates, unknown), steepest))
-    };
-    unknowns.map(of_unknown).fold(rates.normal.norm(), f64::max)
+/// What a flank's curvatures follow from, in the order that [`curvature_change_in`] takes it.
+fn curvature_parts(of: &Member) -> [&DMatrix<f64>; 3] {
+    [&of.slopes, &of.normal_slopes, &of.constraint_slopes]
 }

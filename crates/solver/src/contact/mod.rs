@@ -18,6 +18,7 @@ mod synthesis;
 mod touching;
 mod track;
 mod watch;
+mod wish;
 
 use std::sync::Arc;
 
@@ -38,8 +39,9 @@ pub use pattern::{Gap, GapProblem};
 pub use point::{ContactPoint, ContactState};
 pub use proof::ContactProof;
 pub use start::NoContact;
-pub use synthesis::{ContactNumber, ContactSynthesis, ContactWish, SynthesizedContact};
+pub use synthesis::{ContactSynthesis, SynthesizedContact};
 use watch::Watch;
+pub use wish::{ContactNumber, ContactWish};
 
 /// Two surfaces that roll on each other.
 #[derive(Clone, Debug)]

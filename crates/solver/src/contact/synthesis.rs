@@ -2,17 +2,16 @@
 
 use faer::Mat;
 
-use crate::contact::corners::FlankCorners;
+use crate::contact::wish::{ContactWish, EVEN, Reading};
 use crate::contact::{ContactChange, ContactPoint, ContactProblem};
 use crate::equations::solution::{Range, verdict};
 use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown, SearchEnd};
 
 /// The search ends where no number changes by more than what is worth so much, mm.
 const SETTLED: f64 = 1e-10;
-/// What conditions weigh that need not hold exactly: exact ones give way to them by the square of this.
+/// What conditions that need not hold exactly weigh beside those that do, where a search begins: exact ones give way to them by the square of
+/// this.
 const SOFT: f64 = 1e-4;
-/// Numbers are differenced over a change of the contact by this share: its square, and rounding over it, are below 1e-10.
-const STEP: f64 = 1e-5;
 /// What is left where all that is wanted is there, in what is worth 1 mm.
 const LEFT: f64 = 1e-8;
 /// The way from what a contact is to what it shall be, where that is too long at once: shares of it that are gone at the most, and at the least
@@ -21,160 +20,12 @@ const LONGEST: f64 = 1.0 / 8.0;
 const SHORTEST: f64 = 1.0 / 256.0;
 /// A number that settings change by less than this share of what they changed it by at the beginning has come to its end.
 const TURNED_BACK: f64 = 1e-3;
-/// An angle of a path that is worth 1 mm, radians.
-const ANGLE: f64 = 0.1;
-/// Of the derivatives of the lag, where it is almost even, a curvature that counts.
-const EVEN: f64 = 1e-9;
-
-/// A number of a contact at its vertex, on the second flank. Lengths are mm, angles radians.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ContactNumber {
-    /// Along the axis of the member.
-    Z,
-    /// Distance from that axis.
-    Rho,
-    /// Share of the way from toe to heel.
-    Lengthwise(FlankCorners),
-    /// Share of the way from root to tip.
-    Profilewise(FlankCorners),
-    /// Angle of the path against the rows.
-    Path(FlankCorners),
-    /// Length of the ellipse within a film: its longer axis.
-    Ellipse {
-        /// How thick the film is.
-        film: f64,
-    },
-    /// Second derivative of the lag by the roll.
-    Curvature,
-}
-
-/// What a number of a contact shall be.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ContactWish {
-    /// The number.
-    pub of: ContactNumber,
-    /// Its value.
-    pub wanted: f64,
-    /// How far it may be off: then it counts as least squares weigh it, beside those that hold exactly.
-    pub within: Option<f64>,
-}
-
-/// What is read of a contact.
-#[derive(Clone, Copy, Debug)]
-struct Reading {
-    point: [f64; 3],
-    normal: [f64; 3],
-    path: [f64; 3],
-    /// The smaller curvature of the gap.
-    gap: Option<f64>,
-    curvature: f64,
-}
-
-impl Reading {
-    fn of(at: &ContactPoint) -> Reading {
-        Reading {
-            point: at.in_members[1],
-            normal: at.normals[1],
-            path: at.path[1],
-            gap: at.gap.as_ref().map(|gap| gap.k2),
-            curvature: at.lag_slopes[1],
-        }
-    }
-
-    /// After a step of a change.
-    fn after(&self, step: f64, by: &ContactChange) -> Reading {
-        let add = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|k| a[k] + step * b[k]);
-        Reading {
-            point: add(self.point, by.moved[1]),
-            normal: add(self.normal, by.normals[1]),
-            path: add(self.path, by.path[1]),
-            gap: self.gap.zip(by.gap).map(|(gap, by)| gap + step * by[1]),
-            curvature: self.curvature + step * by.lag_curvature,
-        }
-    }
-
-    /// The step by which a change makes a small share of what is there.
-    fn step(&self, by: &ContactChange) -> f64 {
-        let size = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let gap = self.gap.zip(by.gap).map_or(0.0, |(gap, by)| by[1] / gap);
-        let shares = [
-            size(by.moved[1]) / size(self.point),
-            size(by.normals[1]),
-            size(by.path[1]) / size(self.path),
-            gap,
-            by.lag_curvature / self.curvature,
-        ];
-        let fastest = shares.into_iter().filter(|share| share.is_finite()).fold(0.0, |most: f64, x| most.max(x.abs()));
-        if fastest > 0.0 { STEP / fastest } else { STEP }
-    }
-}
-
-impl ContactNumber {
-    /// Of a contact of flanks; `None` where it has no such number.
-    #[must_use]
-    pub fn of(&self, at: &ContactPoint) -> Option<f64> {
-        self.read(&Reading::of(at))
-    }
-
-    fn read(&self, of: &Reading) -> Option<f64> {
-        let [x, y, z] = of.point;
-        let rho = x.hypot(y);
-        match self {
-            ContactNumber::Z => Some(z),
-            ContactNumber::Rho => Some(rho),
-            ContactNumber::Lengthwise(corners) => Some(corners.shares([z, rho])?[1]),
-            ContactNumber::Profilewise(corners) => Some(corners.shares([z, rho])?[0]),
-            ContactNumber::Path(corners) => Some(corners.directions(of.point, of.normal)?.angle(of.path)),
-            ContactNumber::Ellipse { film } => Some(2.0 * (2.0 * film / of.gap.filter(|gap| *gap > 0.0)?).sqrt()),
-            ContactNumber::Curvature => Some(of.curvature),
-        }
-    }
-}
-
-impl ContactWish {
-    /// How far a contact is from it, in what is worth 1 mm.
-    fn off(&self, of: &Reading) -> Option<f64> {
-        let (value, wanted) = (self.of.read(of)?, self.wanted);
-        let apart = value - wanted;
-        Some(match self.of {
-            ContactNumber::Z | ContactNumber::Rho => apart,
-            ContactNumber::Lengthwise(corners) => apart * span(&corners, [[0.5, 0.0], [0.5, 1.0]]),
-            ContactNumber::Profilewise(corners) => apart * span(&corners, [[0.0, 0.5], [1.0, 0.5]]),
-            // a path has no sense
-            ContactNumber::Path(_) => {
-                let half = std::f64::consts::PI;
-                (apart - half * (apart / half).round()) / ANGLE
-            }
-            // the gap's curvature goes through zero where the ellipse has no end: its logarithm is less bent
-            ContactNumber::Ellipse { .. } => wanted * (value / wanted).ln(),
-            ContactNumber::Curvature => apart / wanted.abs().max(EVEN),
-        })
-    }
-
-    /// From a value to what is wanted; of a path the shorter way round.
-    fn way(&self, from: f64) -> f64 {
-        let way = self.wanted - from;
-        match self.of {
-            ContactNumber::Path(_) => way - std::f64::consts::PI * (way / std::f64::consts::PI).round(),
-            _ => way,
-        }
-    }
-
-    /// The same as least squares weigh it.
-    fn residual(&self, of: &Reading) -> Option<f64> {
-        let Some(within) = self.within else { return self.off(of) };
-        let wanted = match self.of {
-            ContactNumber::Path(_) => self.off(of)? * ANGLE,
-            _ => self.of.read(of)? - self.wanted,
-        };
-        Some(SOFT * wanted / within)
-    }
-}
-
-fn span(corners: &FlankCorners, ends: [[f64; 2]; 2]) -> f64 {
-    let [a, b] = ends.map(|shares| corners.at(shares));
-    (b[0] - a[0]).hypot(b[1] - a[1])
-}
+/// How often conditions that need not hold exactly are weighed anew so that each is near enough, as long as the one that is farthest off comes
+/// nearer by more than a hundredth.
+const MOST_WEIGHINGS: usize = 30;
+const NO_NEARER: f64 = 0.99;
+/// One that is off by less than this share of what it may be becomes no lighter for that: it would drift away.
+const LIGHTEST: f64 = 0.1;
 
 /// A contact whose settings are looked for.
 #[derive(Clone, Debug)]
@@ -192,7 +43,7 @@ pub struct ContactSynthesis<'p> {
 /// Settings with which a contact is what was wanted, or as near to that as they bring it.
 #[derive(Clone, Debug)]
 pub struct SynthesizedContact {
-    /// Residuals are those of the wishes, each in what is worth 1 mm, and last the vertex's own; unknowns the settings, then the roll.
+    /// Of the search that ended there; unknowns are the settings, then the roll.
     pub fit: LeastSquaresFit,
     /// The vertex: flank on flank, however far beyond their outlines and the ranges of their tools.
     pub vertex: ContactPoint,
@@ -202,63 +53,107 @@ pub struct SynthesizedContact {
     pub way: Option<(f64, ContactPoint)>,
 }
 
-impl SynthesizedContact {
-    /// The sum of the squares that are left.
-    fn left(&self) -> f64 {
-        self.fit.residuals.iter().map(|off| off * off).sum()
-    }
-
-    fn is_met(&self) -> bool {
-        self.left() < LEFT * LEFT
-    }
-}
-
 impl ContactSynthesis<'_> {
-    /// Settings and roll with the least squares: from where they are, or where that does not lead to what is wanted, on the way from what the
-    /// contact is to that. Where neither does, the flanks are taken to go on beyond the ranges of their tools, and the lag beyond its own:
-    /// [`SynthesizedContact::vertex`] tells where they do not. `None` if a number is not there at the start.
+    /// Settings and roll with which the contact is what is wanted: from where they are, or where that does not lead there, on the way from what
+    /// the contact is to that. Where neither does, the flanks are taken to go on beyond the ranges of their tools, and the lag beyond its own:
+    /// [`SynthesizedContact::vertex`] tells where they do not. Where that does not either, the vertex with the least squares of what is off.
+    /// `None` if a number is not there at the start.
     ///
     /// # Panics
     /// If there are not as many settings as the pair has parameters.
     #[must_use]
     pub fn solve(&self) -> Option<SynthesizedContact> {
-        let within = self.walked()?;
-        if within.is_met() {
+        let within = self.within_ranges()?;
+        if self.is_met(&within.vertex) {
             return Some(self.least_changed(within));
         }
         let problem = self.problem.clone().beyond_ranges();
         let ContactSynthesis { vertex, wishes, settings, .. } = self.clone();
-        let beyond = ContactSynthesis { problem: &problem, vertex, wishes, settings }.walked();
+        let free = ContactSynthesis { problem: &problem, vertex, wishes, settings };
         let told = |at: ContactPoint| ContactPoint {
             outcome: verdict(&at.all_unknowns(), &self.problem.ranges, true, false),
             ..at
         };
-        match beyond {
-            Some(beyond) if beyond.is_met() => {
-                let least = ContactSynthesis { problem: &problem, ..self.clone() }.least_changed(beyond);
+        match free.within_ranges() {
+            Some(beyond) if free.is_met(&beyond.vertex) => {
+                let least = free.least_changed(beyond);
                 Some(SynthesizedContact { vertex: told(least.vertex.clone()), ..least })
             }
             beyond => {
                 let beyond = beyond.and_then(|of| of.way).map(|(share, at)| (share, told(at)));
                 let ways = within.way.clone().into_iter().chain(beyond);
-                Some(SynthesizedContact { way: ways.max_by(|a, b| a.0.total_cmp(&b.0)), ..within })
+                let way = ways.max_by(|a, b| a.0.total_cmp(&b.0));
+                let nearest =
+                    if self.holds(&within.vertex) { self.least_changed(within) } else { self.nearest_to_all(within) };
+                Some(SynthesizedContact { way, ..nearest })
             }
         }
     }
 
-    /// Where more settings than wishes are free, of all that meet the wishes the ones that are changed least, by their scales. A search for the wishes
-    /// alone leaves settings where its steps led.
+    /// The same within the ranges of tools and of the lag alone, and with whatever changes of settings the search comes to.
+    fn within_ranges(&self) -> Option<SynthesizedContact> {
+        let found = self.walked()?;
+        let is_near = !self.holds(&found.vertex) || self.is_met(&found.vertex);
+        Some(if is_near { found } else { self.weighed(&found).unwrap_or(found) })
+    }
+
+    /// The residuals of a contact, the vertex's own last; `None` where a number is not there.
+    fn residuals(&self, at: &ContactPoint) -> Option<Vec<f64>> {
+        let reading = Reading::of(at);
+        let own = self.to_vertex() * at.lag_slopes[0];
+        self.wishes.iter().map(|wish| wish.residual(&reading)).chain([Some(own)]).collect()
+    }
+
+    fn is_exact(&self, row: usize) -> bool {
+        self.wishes.get(row).is_none_or(|wish| wish.within.is_none())
+    }
+
+    /// Whether a contact is at its vertex, and is exactly what is to be so.
+    fn holds(&self, at: &ContactPoint) -> bool {
+        let is_zero = |(row, off): (usize, &f64)| !self.is_exact(row) || off.abs() < LEFT;
+        self.residuals(at).is_some_and(|of| of.iter().enumerate().all(is_zero))
+    }
+
+    /// Whether all is as near as it is wanted, too.
+    fn is_met(&self, at: &ContactPoint) -> bool {
+        let is_near = |(row, off): (usize, &f64)| self.is_exact(row) || off.abs() <= 1.0;
+        self.holds(at) && self.residuals(at).is_some_and(|of| of.iter().enumerate().all(is_near))
+    }
+
+    /// How far off the one is that is farthest off, of those that need not hold exactly.
+    fn farthest(&self, at: &ContactPoint) -> Option<f64> {
+        let soft = self.residuals(at)?.into_iter().enumerate().filter(|(row, _)| !self.is_exact(*row));
+        Some(soft.fold(0.0, |most: f64, (_, off)| most.max(off.abs())))
+    }
+
+    /// The sum of the squares that are left, each with its weight.
+    fn left(&self, at: &ContactPoint) -> f64 {
+        let square = |(row, off): (usize, f64)| (self.weight(row) * off).powi(2);
+        self.residuals(at).map_or(f64::INFINITY, |of| of.into_iter().enumerate().map(square).sum())
+    }
+
+    fn weight(&self, row: usize) -> f64 {
+        if self.is_exact(row) { 1.0 } else { SOFT }
+    }
+
+    /// Where settings are left free, of all that do as much for the wishes the ones that are changed least, by their scales. A search for the
+    /// wishes alone leaves settings where its steps led.
     fn least_changed(&self, found: SynthesizedContact) -> SynthesizedContact {
-        let free = self.settings.iter().filter(|of| of.range.low < of.range.high).count();
-        if free <= self.wishes.len() || self.wishes.iter().any(|wish| wish.within.is_some()) {
+        if found.fit.directions.iter().all(|of| of.is_used) {
             return found;
         }
         let changed = |values: &[f64]| -> Vec<f64> {
             self.settings.iter().zip(values).map(|(of, value)| (value - of.start) / of.scale).collect()
         };
+        // what gave way stays where it came to
+        let stays = |wish: &ContactWish| match wish.within {
+            Some(_) => Some(ContactWish { wanted: wish.of.of(&found.vertex)?, within: None, ..*wish }),
+            None => Some(*wish),
+        };
+        let Some(wishes) = self.wishes.iter().map(stays).collect::<Option<Vec<_>>>() else { return found };
         let count = self.settings.len();
-        let from = self.from(&found, self.wishes.clone());
-        let nearer = from.search(self.wishes.len() + 1, |values, of| Linearized {
+        let from = self.from(&found, wishes.clone());
+        let nearer = from.search(wishes.len() + 1, |values, of| Linearized {
             residuals: changed(values).into_iter().chain(of.residuals).collect(),
             jacobian: Mat::from_fn(count + of.jacobian.nrows(), of.jacobian.ncols(), |row, k| match row {
                 own if own < count => {
@@ -274,7 +169,8 @@ impl ContactSynthesis<'_> {
         let Some((fit, vertex)) = nearer else { return found };
         let near = SynthesizedContact { fit, vertex, ..found.clone() };
         // once more for the wishes alone: the least change is known to fewer digits than they are
-        let ended = self.from(&near, self.wishes.clone()).solve_at_once().filter(SynthesizedContact::is_met);
+        let last = self.from(&near, wishes);
+        let ended = last.solve_at_once().filter(|of| last.is_met(&of.vertex));
         let size = |of: &SynthesizedContact| changed(&of.fit.values).iter().map(|x| x * x).sum::<f64>();
         match ended {
             Some(ended) if size(&ended) < size(&found) => SynthesizedContact { way: found.way, ..ended },
@@ -282,17 +178,55 @@ impl ContactSynthesis<'_> {
         }
     }
 
+    /// The vertex with the least squares of all that is off, from what was found or from where settings and contact are.
+    fn nearest_to_all(&self, found: SynthesizedContact) -> SynthesizedContact {
+        let starts = [self.from(&found, self.wishes.clone()), self.clone()];
+        let ends = starts.into_iter().filter_map(|of| of.search(1, |_, of| self.weighted(of)));
+        let is_vertex = |at: &ContactPoint| (self.to_vertex() * at.lag_slopes[0]).abs() < LEFT;
+        let ends = ends.filter(|(_, vertex)| is_vertex(vertex));
+        match ends.min_by(|a, b| self.left(&a.1).total_cmp(&self.left(&b.1))) {
+            Some((fit, vertex)) => SynthesizedContact { fit, vertex, ..found },
+            None => found,
+        }
+    }
+
+    /// Conditions that need not hold exactly, where the least squares of them leave one farther off than it may be: weighed by how far each is off,
+    /// again and again, as Lawson does for the least largest one. `None` where that does not bring all of them near enough.
+    fn weighed(&self, found: &SynthesizedContact) -> Option<SynthesizedContact> {
+        let mut wishes = self.wishes.clone();
+        let (mut last, mut least) = (found.clone(), self.farthest(&found.vertex)?);
+        for _ in 0..MOST_WEIGHINGS {
+            let off = self.residuals(&last.vertex)?;
+            for (wish, off) in wishes.iter_mut().zip(off) {
+                // the square of a residual weighs as much more as it is off
+                wish.within = wish.within.map(|within| within / off.abs().max(LIGHTEST).sqrt());
+            }
+            last = self.from(&last, wishes.clone()).solve_at_once()?;
+            if self.is_met(&last.vertex) {
+                return Some(SynthesizedContact { way: found.way.clone(), ..last });
+            }
+            let farthest = self.farthest(&last.vertex)?;
+            if farthest > NO_NEARER * least {
+                return None;
+            }
+            least = farthest;
+        }
+        None
+    }
+
     /// At once or step by step, within the ranges of the problem.
     fn walked(&self) -> Option<SynthesizedContact> {
         let direct = self.solve_at_once()?;
-        if direct.is_met() {
+        if self.is_met(&direct.vertex) {
             return Some(direct);
         }
         let is_whole = |of: &SynthesizedContact| of.share == 1.0;
         let followed = self.followed();
         let way = followed.as_ref().filter(|of| !is_whole(of)).map(|of| (of.share, of.vertex.clone()));
         let found = match followed {
-            Some(followed) if is_whole(&followed) && followed.left() < direct.left() => followed,
+            Some(followed) if is_whole(&followed) && self.left(&followed.vertex) < self.left(&direct.vertex) => {
+                followed
+            }
             // where no search ends, what was reached on the way is more than where it wandered to
             Some(followed) if direct.fit.end != SearchEnd::Settled && !is_whole(&followed) => followed,
             _ => direct,
@@ -303,7 +237,6 @@ impl ContactSynthesis<'_> {
     /// In steps, each from where the last one ends, as long as they are met: shorter ones where one is not.
     fn followed(&self) -> Option<SynthesizedContact> {
         let from = self.wishes.iter().map(|wish| wish.of.of(self.vertex)).collect::<Option<Vec<f64>>>()?;
-        let is_exact = self.wishes.iter().all(|wish| wish.within.is_none());
         let mut last: Option<SynthesizedContact> = None;
         let mut step = LONGEST;
         while step >= SHORTEST {
@@ -317,7 +250,7 @@ impl ContactSynthesis<'_> {
                 None => ContactSynthesis { wishes, ..self.clone() },
             };
             let found = next.solve_at_once().filter(|found| found.fit.end == SearchEnd::Settled);
-            match found.filter(|found| found.is_met() || !is_exact) {
+            match found.filter(|found| next.holds(&found.vertex)) {
                 Some(found) if share == 1.0 => return Some(found),
                 Some(found) => (last, step) = (Some(SynthesizedContact { share, ..found }), LONGEST.min(2.0 * step)),
                 None => step *= 0.5,
@@ -348,15 +281,11 @@ impl ContactSynthesis<'_> {
 
     /// How far off a wish stays while the others hold, with the vertex there: `None` unless free settings change it by less than a limit.
     fn end_of(&self, wish: usize, least: f64) -> Option<(f64, ContactPoint)> {
-        let is_exact = |k: &usize| *k != wish && self.wishes.get(*k).is_none_or(|wish| wish.within.is_none());
         // those that need not hold exactly stand with the one that gives way, the vertex's own with the exact ones
         let (exact, soft): (Vec<usize>, Vec<usize>) =
-            (0..=self.wishes.len()).filter(|k| *k != wish).partition(is_exact);
+            (0..=self.wishes.len()).filter(|k| *k != wish).partition(|k| self.is_exact(*k));
         let order = [&[wish][..], &soft, &exact].concat();
-        let (fit, vertex) = self.search(exact.len(), |_, of: Linearized| Linearized {
-            residuals: order.iter().map(|row| of.residuals[*row]).collect(),
-            jacobian: Mat::from_fn(order.len(), of.jacobian.ncols(), |row, k| of.jacobian[(order[row], k)]),
-        })?;
+        let (fit, vertex) = self.search(exact.len(), |_, of| in_order(&of, &order))?;
         let off = fit.residuals[0].abs();
         let free = fit.gradient.iter().zip(&fit.held).filter(|(_, held)| held.is_none()).map(|(slope, _)| slope);
         let slope = free.map(|slope| slope * slope).sum::<f64>().sqrt();
@@ -364,14 +293,32 @@ impl ContactSynthesis<'_> {
         (holds && slope <= least * off).then_some((off, vertex))
     }
 
-    /// The same from where settings and contact are, without a way.
+    /// The same from where settings and contact are, without a way: least squares, in which those that hold exactly outweigh the others, and from
+    /// there, if there are others, the least squares of these with the exact ones as conditions.
     ///
     /// # Panics
     /// If there are not as many settings as the pair has parameters.
     #[must_use]
     pub fn solve_at_once(&self) -> Option<SynthesizedContact> {
-        let (fit, vertex) = self.search(0, |_, linearized| linearized)?;
-        Some(SynthesizedContact { fit, vertex, share: 1.0, way: None })
+        let found = |(fit, vertex)| SynthesizedContact { fit, vertex, share: 1.0, way: None };
+        let begun = found(self.search(0, |_, of| self.weighted(of))?);
+        let (exact, soft): (Vec<usize>, Vec<usize>) = (0..=self.wishes.len()).partition(|row| self.is_exact(*row));
+        if soft.is_empty() {
+            return Some(begun);
+        }
+        let order = [&soft[..], &exact].concat();
+        let from = self.from(&begun, self.wishes.clone());
+        let ended = from.search(exact.len(), |_, of| in_order(&of, &order)).map(found);
+        Some(ended.filter(|ended| self.holds(&ended.vertex)).unwrap_or(begun))
+    }
+
+    fn weighted(&self, mut of: Linearized) -> Linearized {
+        for row in 0..of.residuals.len() {
+            let weight = self.weight(row);
+            of.residuals[row] *= weight;
+            of.jacobian.row_mut(row).iter_mut().for_each(|slope| *slope *= weight);
+        }
+        of
     }
 
     /// With so many residuals, the last ones as they are ordered for the values of settings and roll, that are to be zero.
@@ -416,6 +363,11 @@ impl ContactSynthesis<'_> {
         self.vertex.path[1].iter().map(|x| x * x).sum::<f64>().sqrt().max(1.0)
     }
 
+    /// The vertex is where the first derivative of the lag is zero: it is off by that over the second, along the path.
+    fn to_vertex(&self) -> f64 {
+        self.speed() / self.vertex.lag_slopes[1].abs().max(EVEN)
+    }
+
     fn linearized(&self, near: &ContactPoint, values: &[f64]) -> Option<(ContactPoint, Linearized)> {
         let (settings, roll) = (&values[..self.settings.len()], values[self.settings.len()]);
         let problem = self.problem.with_values(settings);
@@ -424,10 +376,8 @@ impl ContactSynthesis<'_> {
         let (by_roll, mut changes) = problem.changes(&at, &alone)?;
         changes.push(by_roll);
         let reading = Reading::of(&at);
-        // the vertex is where the first derivative is zero: it is off by that over the second, along the path
-        let to_vertex = self.speed() / self.vertex.lag_slopes[1].abs().max(EVEN);
-        let own = self.wishes.iter().map(|wish| wish.residual(&reading));
-        let residuals = own.chain([Some(to_vertex * at.lag_slopes[0])]).collect::<Option<Vec<f64>>>()?;
+        let to_vertex = self.to_vertex();
+        let residuals = self.residuals(&at)?;
         let column = |change: &ContactChange| {
             let step = reading.step(change);
             let [before, after] = [-step, step].map(|step| reading.after(step, change));
@@ -437,5 +387,13 @@ impl ContactSynthesis<'_> {
         let columns = changes.iter().map(column).collect::<Option<Vec<Vec<f64>>>>()?;
         let jacobian = Mat::from_fn(residuals.len(), columns.len(), |row, k| columns[k][row]);
         Some((at, Linearized { residuals, jacobian }))
+    }
+}
+
+/// Some of the residuals, in an order.
+fn in_order(of: &Linearized, rows: &[usize]) -> Linearized {
+    Linearized {
+        residuals: rows.iter().map(|row| of.residuals[*row]).collect(),
+        jacobian: Mat::from_fn(rows.len(), of.jacobian.ncols(), |row, k| of.jacobian[(rows[row], k)]),
     }
 }

@@ -24,7 +24,7 @@ impl System {
         evaluation.at(root);
         let jacobian = Mat::from_fn(size, size, |i, j| evaluation.jacobian(i, j));
         let inverse = PartialPivLu::new(jacobian.as_ref());
-        let rate = |k: usize| along.iter().find(|(of, _)| size + of == k).map_or(0.0, |(_, rate)| *rate);
+        let rate = |k: usize| along.iter().filter(|(of, _)| size + of == k).map(|(_, rate)| rate).sum::<f64>();
         let mut series: Vec<Vec<f64>> = root.iter().map(|x| vec![*x]).collect();
         for k in 1..=order {
             let unknowns = series.iter().map(|known| &known[..]);

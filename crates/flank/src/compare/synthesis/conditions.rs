@@ -1,5 +1,7 @@
 //! What is wanted of a contact, as the solver takes it and as people read it.
 
+use std::f64::consts::PI;
+
 use flank_chain_dsl::{ContactCondition, ContactQuantity, Dimension, Job, WantedContact};
 use flank_solver::{ContactNumber, ContactPoint, ContactWish, FlankCorners, Outline};
 
@@ -84,14 +86,19 @@ impl Condition {
         Some(self.height * self.wish.of.of(at)?)
     }
 
-    /// How far a value is from what is wanted.
-    pub(super) fn off(&self, value: f64) -> f64 {
-        let off = (value - self.of.value).abs();
+    /// From what is wanted to a value.
+    pub(super) fn apart(&self, value: f64) -> f64 {
+        let apart = value - self.of.value;
         match self.of.of {
             // a path has no sense
-            ContactQuantity::Path => off.min((off - std::f64::consts::PI).abs()),
-            _ => off,
+            ContactQuantity::Path => apart - PI * (apart / PI).round(),
+            _ => apart,
         }
+    }
+
+    /// How far a value is from what is wanted.
+    pub(super) fn off(&self, value: f64) -> f64 {
+        self.apart(value).abs()
     }
 
     /// Whether a contact meets it.

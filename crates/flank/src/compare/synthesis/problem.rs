@@ -134,6 +134,24 @@ impl<'p, 'g> Problem<'p, 'g> {
         self.synthesis(self.wishes.clone(), &self.unknowns).nearest(condition, found)
     }
 
+    /// Conditions that no search meets together: without any one of them the others are met. One alone
+    /// where it is not met by itself.
+    pub(super) fn against(&self, is_met: impl Fn(&[usize], &ContactPoint) -> bool) -> Vec<usize> {
+        let mut against: Vec<usize> = (0..self.wishes.len()).collect();
+        for k in 0..self.wishes.len() {
+            let rest: Vec<usize> = against.iter().copied().filter(|of| *of != k).collect();
+            if rest.is_empty() {
+                break;
+            }
+            let wishes = rest.iter().map(|k| self.wishes[*k]).collect();
+            let found = self.synthesis(wishes, &self.unknowns).solve();
+            if !found.is_some_and(|found| is_met(&rest, &found.vertex)) {
+                against = rest;
+            }
+        }
+        against
+    }
+
     /// What each setting does to each condition for its scale, with the roll last; as the pair is.
     pub(super) fn effects(&self) -> Vec<Vec<f64>> {
         self.synthesis(self.wishes.clone(), &self.unknowns).effects().unwrap_or_default()

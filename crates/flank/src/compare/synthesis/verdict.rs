@@ -138,7 +138,13 @@ fn why(
     if (0..problem.settings.len()).any(|k| problem.is_rounded(k)) {
         reasons.push("steps: settings that are multiples of their steps come no nearer".to_string());
     }
-    if reasons.is_empty() {
+    let is_told = !reasons.is_empty();
+    // steps stand in the way of what is possible without
+    if !(0..problem.settings.len()).any(|k| problem.is_rounded(k)) {
+        reasons.extend(against(members, conditions, problem));
+    }
+    reasons.extend(compromise(conditions, found));
+    if !is_told {
         reasons.extend((0..conditions.len()).filter_map(|k| yielding(conditions, problem, found, k)));
         if let Some((share, at)) = &found.way {
             let share = 100.0 * share;
@@ -148,7 +154,7 @@ fn why(
             reasons.extend(none_of_flanks(members, at));
         }
     }
-    if reasons.is_empty() && found.fit.end != SearchEnd::Settled {
+    if found.fit.end != SearchEnd::Settled {
         reasons.push(
             "search: it came to no end, and ended at what is told as reached: whether more of it can be met is not known".to_string(),
         );
@@ -157,6 +163,40 @@ fn why(
         reasons.push("settings: these come no nearer to all of it together".to_string());
     }
     reasons
+}
+
+/// Which conditions stand against each other.
+fn against(members: &Members<'_, '_>, conditions: &[Condition], problem: &Problem<'_, '_>) -> Option<String> {
+    if conditions.len() < 2 {
+        return None;
+    }
+    let are_met = |of: &[usize], at: &ContactPoint| {
+        of.iter().all(|k| conditions[*k].is_met_at(at)) && none_of_flanks(members, at).is_empty()
+    };
+    let names: Vec<&str> = problem.against(are_met).into_iter().map(|k| conditions[k].of.of.name()).collect();
+    Some(match names[..] {
+        [one] => format!("against: no search meets {one} with these settings, even where nothing else is wanted"),
+        [one, other] => format!("against: {one} and {other}: each is met without the other, and no search meets both"),
+        _ => format!(
+            "against: {}: without any one of them the others are met, and no search meets all of them",
+            names.join(", ")
+        ),
+    })
+}
+
+/// How far off each condition is with the settings that come nearest to all.
+fn compromise(conditions: &[Condition], found: &SynthesizedContact) -> Option<String> {
+    if conditions.len() < 2 || found.fit.end != SearchEnd::Settled {
+        return None;
+    }
+    let off = |of: &Condition| {
+        let value = of.value(&found.vertex)?;
+        let apart = of.shown(of.apart(value));
+        let shown = format!("{} {apart:+.6} {}", of.of.of.name(), of.unit());
+        (!of.is_met(value)).then(|| shown.trim_end().to_string())
+    };
+    let off: Vec<String> = conditions.iter().filter_map(off).collect();
+    Some(format!("least squares: nearest to all of it these settings leave {}", off.join(", ")))
 }
 
 /// Conditions that the settings do not change, one by one or together.

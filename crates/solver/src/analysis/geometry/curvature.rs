@@ -21,6 +21,18 @@ pub struct Curvature {
     rounding: f64,
 }
 
+/// How the normal curvatures of a surface change with something else: the change of the form, in tangents that turn with the normal and not
+/// about it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct CurvatureChange(Matrix2<f64>);
+
+impl CurvatureChange {
+    /// This one and that of a surface that touches in the same tangents.
+    pub(crate) fn plus(&self, other: &CurvatureChange) -> CurvatureChange {
+        CurvatureChange(self.0 + other.0)
+    }
+}
+
 /// The extreme normal curvatures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Principal {
@@ -70,6 +82,24 @@ impl Curvature {
         form.iter().all(|entry| entry.is_finite()).then_some(Curvature { tangents, form, rounding })
     }
 
+    /// The same with its change, each of both with how it changes.
+    ///
+    /// Of F = B A⁻¹, with A how the position changes along both directions and B how the normal does, dF = (dB − F dA) A⁻¹. Tangents that
+    /// turn with the normal change neither A nor B: along the normal both are zero.
+    pub(super) fn changing(
+        tangents: Matrix3x2<f64>,
+        [along, along_rate]: [Matrix3x2<f64>; 2],
+        [turning, turning_rate]: [Matrix3x2<f64>; 2],
+        scales: [f64; 2],
+    ) -> Option<(Curvature, CurvatureChange)> {
+        let curvature = Curvature::new(tangents, along, turning, scales)?;
+        let inverse = tangents.tr_mul(&along).try_inverse()?;
+        let form = tangents.tr_mul(&turning) * inverse;
+        let change = (tangents.tr_mul(&turning_rate) - form * tangents.tr_mul(&along_rate)) * inverse;
+        let change = 0.5 * (change + change.transpose());
+        change.iter().all(|entry| entry.is_finite()).then_some((curvature, CurvatureChange(change)))
+    }
+
     /// Normal curvature along a direction in the surface's frame, of any length; what sticks out of the tangent plane is
     /// left away. `None` for a direction along the normal.
     pub fn along(&self, direction: [f64; 3]) -> Option<f64> {
@@ -91,6 +121,19 @@ impl Curvature {
             [first, normal.cross(&first)].map(<[f64; 3]>::from)
         });
         Principal { k1: mean + radius, k2: mean - radius, directions }
+    }
+
+    /// How the principal curvatures change, the larger one first. Where both are the same, and part with any change, it is that of their mean.
+    pub(crate) fn principal_change(&self, by: &CurvatureChange) -> [f64; 2] {
+        let parts = |form: &Matrix2<f64>| {
+            let [[a, _], [b, c]] = form.data.0;
+            [0.5 * (a + c), 0.5 * (a - c), b]
+        };
+        let ([_, half, mixed], [mean_rate, half_rate, mixed_rate]) = (parts(&self.form), parts(&by.0));
+        let radius = half.hypot(mixed);
+        let is_one = 2.0 * radius <= self.rounding;
+        let radius_rate = if is_one { 0.0 } else { (half * half_rate + mixed * mixed_rate) / radius };
+        [mean_rate + radius_rate, mean_rate - radius_rate]
     }
 
     /// Half the sum of the principal curvatures, 1/mm.

@@ -9,10 +9,11 @@ mod null_space;
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 use nalgebra::{DMatrix, DMatrixView, Matrix2, Matrix3x2, Vector3};
 
+pub(crate) use curvature::CurvatureChange;
 use curvature::oriented;
 pub(crate) use curvature::tangents;
 pub use curvature::{Curvature, Principal};
-use null_space::null_space;
+use null_space::{null_space, null_space_change};
 
 use crate::surface::bound::BoundSurface;
 
@@ -200,6 +201,22 @@ pub(crate) fn curvature_in(
         coordinates: DMatrix::zeros(0, position.ncols()),
     };
     slopes.curvature(tangents, &null_space(&slopes.constraints)?)
+}
+
+/// The same with its change, where these derivatives change at rates of their own and stay those of a surface with a unit normal.
+pub(crate) fn curvature_change_in(
+    tangents: Matrix3x2<f64>,
+    at: [&DMatrix<f64>; 3],
+    rates: [&DMatrix<f64>; 3],
+) -> Option<(Curvature, CurvatureChange)> {
+    let [position, normal, constraints] = at;
+    let free = null_space(constraints)?;
+    let moving = null_space_change(constraints, rates[2], &free)?;
+    let two = |all: DMatrix<f64>| Matrix3x2::from_column_slice(all.as_slice());
+    let changed = |at: &DMatrix<f64>, rates: &DMatrix<f64>| two(rates * &free + at * &moving);
+    let along = [two(position * &free), changed(position, rates[0])];
+    let turning = [two(normal * &free), changed(normal, rates[1])];
+    Curvature::changing(tangents, along, turning, [position.norm(), normal.norm()])
 }
 
 /// Derivatives with respect to the unknowns (columns).
