@@ -340,7 +340,12 @@ fn wishes_that_stand_against_each_other_are_named() {
             "against: lengthwise, path, transmission_error: without any one",
             &[place, path, error],
         ),
-        (&["lengthwise: 0.5", error], &["shift"], "against: no search meets lengthwise", &["lengthwise: 0.5"]),
+        (
+            &["lengthwise: 0.5", "path: about(8.55 deg, 1 deg)"],
+            &["shift"],
+            "against: no search meets lengthwise",
+            &["lengthwise: 0.5"],
+        ),
     ];
     for (wishes, vary, told, against) in cases {
         let found = solved(&wishes.join(", "), vary).expect("a result");
