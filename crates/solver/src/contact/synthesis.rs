@@ -9,6 +9,8 @@ use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, Sc
 
 /// The search ends where no number changes by more than what is worth so much, mm.
 const SETTLED: f64 = 1e-10;
+/// The least change is known to this share of the scales: a search for it closes in by steps that shrink slowly.
+const LEAST: f64 = 1e-4;
 /// What conditions that need not hold exactly weigh beside those that do, where a search begins: exact ones give way to them by the square of
 /// this.
 const SOFT: f64 = 1e-4;
@@ -153,7 +155,7 @@ impl ContactSynthesis<'_> {
         let Some(wishes) = self.wishes.iter().map(stays).collect::<Option<Vec<_>>>() else { return found };
         let count = self.settings.len();
         let from = self.from(&found, wishes.clone());
-        let nearer = from.search(wishes.len() + 1, |values, of| Linearized {
+        let nearer = from.search((wishes.len() + 1, LEAST), |values, of| Linearized {
             residuals: changed(values).into_iter().chain(of.residuals).collect(),
             jacobian: Mat::from_fn(count + of.jacobian.nrows(), of.jacobian.ncols(), |row, k| match row {
                 own if own < count => {
@@ -181,7 +183,7 @@ impl ContactSynthesis<'_> {
     /// The vertex with the least squares of all that is off, from what was found or from where settings and contact are.
     fn nearest_to_all(&self, found: SynthesizedContact) -> SynthesizedContact {
         let starts = [self.from(&found, self.wishes.clone()), self.clone()];
-        let ends = starts.into_iter().filter_map(|of| of.search(1, |_, of| self.weighted(of)));
+        let ends = starts.into_iter().filter_map(|of| of.search((1, SETTLED), |_, of| self.weighted(of)));
         let is_vertex = |at: &ContactPoint| (self.to_vertex() * at.lag_slopes[0]).abs() < LEFT;
         let ends = ends.filter(|(_, vertex)| is_vertex(vertex));
         match ends.min_by(|a, b| self.left(&a.1).total_cmp(&self.left(&b.1))) {
@@ -285,7 +287,7 @@ impl ContactSynthesis<'_> {
         let (exact, soft): (Vec<usize>, Vec<usize>) =
             (0..=self.wishes.len()).filter(|k| *k != wish).partition(|k| self.is_exact(*k));
         let order = [&[wish][..], &soft, &exact].concat();
-        let (fit, vertex) = self.search(exact.len(), |_, of| in_order(&of, &order))?;
+        let (fit, vertex) = self.search((exact.len(), SETTLED), |_, of| in_order(&of, &order))?;
         let off = fit.residuals[0].abs();
         let free = fit.gradient.iter().zip(&fit.held).filter(|(_, held)| held.is_none()).map(|(slope, _)| slope);
         let slope = free.map(|slope| slope * slope).sum::<f64>().sqrt();
@@ -301,14 +303,14 @@ impl ContactSynthesis<'_> {
     #[must_use]
     pub fn solve_at_once(&self) -> Option<SynthesizedContact> {
         let found = |(fit, vertex)| SynthesizedContact { fit, vertex, share: 1.0, way: None };
-        let begun = found(self.search(0, |_, of| self.weighted(of))?);
+        let begun = found(self.search((0, SETTLED), |_, of| self.weighted(of))?);
         let (exact, soft): (Vec<usize>, Vec<usize>) = (0..=self.wishes.len()).partition(|row| self.is_exact(*row));
         if soft.is_empty() {
             return Some(begun);
         }
         let order = [&soft[..], &exact].concat();
         let from = self.from(&begun, self.wishes.clone());
-        let ended = from.search(exact.len(), |_, of| in_order(&of, &order)).map(found);
+        let ended = from.search((exact.len(), SETTLED), |_, of| in_order(&of, &order)).map(found);
         Some(ended.filter(|ended| self.holds(&ended.vertex)).unwrap_or(begun))
     }
 
@@ -321,15 +323,15 @@ impl ContactSynthesis<'_> {
         of
     }
 
-    /// With so many residuals, the last ones as they are ordered for the values of settings and roll, that are to be zero.
+    /// With so many residuals, the last ones as they are ordered for the values of settings and roll, that are to be zero; it ends where no residual
+    /// changes by more than `settled`.
     fn search(
         &self,
-        exact: usize,
+        (exact, settled): (usize, f64),
         ordered: impl Fn(&[f64], Linearized) -> Linearized,
     ) -> Option<(LeastSquaresFit, ContactPoint)> {
         let unknowns = self.settings.iter().copied().chain([self.roll()]).collect();
-        let problem =
-            LeastSquares { unknowns, exact, resolution: 0.0, uses_weak: false, settled: SETTLED, given_up: None };
+        let problem = LeastSquares { unknowns, exact, resolution: 0.0, uses_weak: false, settled, given_up: None };
         // a step that is not taken leads to a contact, too
         let mut tried: Vec<(Vec<f64>, ContactPoint)> = Vec::new();
         let fit = problem.solve(|values| {
