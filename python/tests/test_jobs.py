@@ -30,8 +30,15 @@ def test_values_have_units(job):
     assert values == pytest.approx([21] * 4, rel=1e-15) and value.unit == "deg"
     length = job.with_values({"m.radial_distance": units.Quantity(9.81, "cm")}).parameters["m.radial_distance"]
     assert length.value == pytest.approx(98.1, rel=1e-15)
-    with pytest.raises(flank.InputError, match="a length, an angle or a number"):
+    with pytest.raises(flank.InputError, match="a length, an angle, a number or products of them"):
         job.with_values({"c.blade_angle": units.Quantity(1, "kg")})
+    # so are products: one over a length, and an angle over a length
+    gear = flank.load(ROOT / "specs/double_envelope/shaped_ring_gear.chain")
+    curved = [gear.with_values({"parabola": of}).parameters["parabola"].value for of in [units.Quantity(5, "1/m"), "0.005 mm^-1"]]
+    assert curved == pytest.approx([0.005] * 2, rel=1e-15)
+    skived = flank.load(ROOT / "specs/hobbing/skived_internal_gear.chain")
+    twisted = [skived.with_values({"m.twist": of}).parameters["m.twist"].value for of in [units.Quantity(2, "deg/m"), "0.002 deg/mm"]]
+    assert twisted[0] == pytest.approx(twisted[1], rel=1e-15) and twisted[0] != 0
     # a number is one in whatever unit, and no angle
     ratios = [units.Quantity(335, "percent"), units.Quantity(3350, "um/mm"), units.Quantity(3.35, "")]
     values = [job.with_values({"m.ratio_of_roll": of}).parameters["m.ratio_of_roll"].value for of in ratios]

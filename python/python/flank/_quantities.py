@@ -47,15 +47,30 @@ def _number(value: Any) -> str:
 
 
 def _of_pint(value: Any) -> str:
-    if value.check("[length]"):
-        return f"{_number(value.to('mm').magnitude)} mm"
     # percent and um/mm are numbers, degrees are not
-    plain = value.to_root_units() if value.dimensionless else value
-    if str(plain.units) == "radian":
-        return f"{_number(value.to('radian').magnitude)} rad"
-    if str(plain.units) in ("dimensionless", ""):
-        return _number(plain.magnitude)
-    raise InputError(f"a length, an angle or a number is wanted: not {value}")
+    root = value.to_root_units()
+    powers = dict(root.unit_items())
+    if not powers.keys() <= {"meter", "radian"} or any(power != int(power) for power in powers.values()):
+        raise InputError(f"a length, an angle, a number or products of them are wanted: not {value}")
+    size = float(root.magnitude) * 1e3 ** powers.get("meter", 0)
+    if powers == {"meter": 1}:
+        # as near as the unit itself leads
+        size = value.to("mm").magnitude
+    return f"{_number(size)} {_product(int(powers.get('meter', 0)), int(powers.get('radian', 0)))}".strip()
+
+
+def _product(of_length: int, of_angle: int) -> str:
+    """Powers of mm and rad as one unit of the language: `rad/mm`, `mm^-1`; nothing for a number.
+
+    >>> from flank._quantities import _product
+    >>> _product(1, 0), _product(-2, 1), _product(-1, 0), _product(0, 0)
+    ('mm', 'rad/mm^2', 'mm^-1', '')
+    """
+    named = [(name, power) for name, power in (("mm", of_length), ("rad", of_angle)) if power]
+    above = [(name, power) for name, power in named if power > 0]
+    raised = [name if power == 1 else f"{name}^{power}" for name, power in above or named]
+    below = [name if power == -1 else f"{name}^{-power}" for name, power in named if power < 0 and above]
+    return "/".join(["*".join(raised), *below])
 
 
 def _unit(name: str) -> tuple[str, float] | None:
