@@ -172,11 +172,17 @@ fn wrong(of: &[Quantity], ([a, b, c, d], step): &([ContactPoint; 4], f64)) -> (V
     (of.iter().filter_map(off).collect(), told)
 }
 
+/// Contacts at two steps of a cause on either side, with the step.
+type Around = ([ContactPoint; 4], f64);
+
 /// A contact, whether it is followed as a vertex, and for each cause its quantities with contacts around it.
 struct Compared {
     what: String,
-    of: Vec<(String, Vec<Quantity>, ([ContactPoint; 4], f64))>,
+    of: Vec<(String, Vec<Quantity>, Around)>,
 }
+
+/// A shipped pair, values of its job, a roll position, and how many contacts of it are compared.
+type Pair = (&'static str, &'static [(&'static str, &'static str)], f64, usize);
 
 /// Contacts of a pair at a roll position and at the vertex near it, if that is asked for, each with all that may be told of its changes.
 fn compared(spec: &str, set: &[(&str, &str)], (roll, has_vertex): (f64, bool)) -> Vec<Compared> {
@@ -238,7 +244,7 @@ fn compared(spec: &str, set: &[(&str, &str)], (roll, has_vertex): (f64, bool)) -
 /// contact change as central differences say of contacts that are solved anew, of two steps so that their square cancels.
 #[test]
 fn all_settings_change_a_contact_as_solving_again_does() {
-    let pairs: [(&str, &[(&str, &str)], f64, usize); 6] = [
+    let pairs: [Pair; 6] = [
         ("bevel_19x62", &[], 0.05, 2),
         ("hypoid_pair", &[], 0.05, 2),
         ("helical_pair", &[], 0.05, 1),
