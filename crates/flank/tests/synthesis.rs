@@ -324,21 +324,26 @@ fn what_is_followed_by_what_varies_is_told() {
 
 const ROLL: &str = "p.modified_roll_2c";
 
+/// Wishes, settings, what is told, and which of the wishes stand against each other.
+type Fight = (&'static [&'static str], &'static [&'static str], &'static str, &'static [&'static str]);
+
 /// Wishes that fight are named, no more and no fewer: without any one of them the others are met. A wish that is not met by itself is told alone, and
 /// so is the end of a range that holds it.
 #[test]
 fn wishes_that_stand_against_each_other_are_named() {
-    let (path, error) = ("path: 8.8 deg", "transmission_error: 28 arcsec");
-    let (near, place) = ("lengthwise: about(0.35, 0.2)", "lengthwise: 0.4");
-    let cases: [(&[&str], &[&str], &str, &[&str]); 4] = [
-        (&[path, error], &[ROLL], "against: path and transmission_error: each", &[path, error]),
+    const PATH: &str = "path: 8.8 deg";
+    const ERROR: &str = "transmission_error: 28 arcsec";
+    const NEAR: &str = "lengthwise: about(0.35, 0.2)";
+    const PLACE: &str = "lengthwise: 0.4";
+    let cases: [Fight; 4] = [
+        (&[PATH, ERROR], &[ROLL], "against: path and transmission_error: each", &[PATH, ERROR]),
         // what is met anyway does not take part
-        (&[near, path, error], &[ROLL], "against: path and transmission_error: each", &[path, error]),
+        (&[NEAR, PATH, ERROR], &[ROLL], "against: path and transmission_error: each", &[PATH, ERROR]),
         (
-            &[place, path, error],
+            &[PLACE, PATH, ERROR],
             &[ROLL, "p.ratio_of_roll"],
             "against: lengthwise, path, transmission_error: without any one",
-            &[place, path, error],
+            &[PLACE, PATH, ERROR],
         ),
         (
             &["lengthwise: 0.5", "path: about(8.55 deg, 1 deg)"],
