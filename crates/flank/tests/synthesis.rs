@@ -335,7 +335,7 @@ fn wishes_that_stand_against_each_other_are_named() {
     const ERROR: &str = "transmission_error: 28 arcsec";
     const NEAR: &str = "lengthwise: about(0.35, 0.2)";
     const PLACE: &str = "lengthwise: 0.4";
-    let cases: [Fight; 4] = [
+    let cases: [Fight; 5] = [
         (&[PATH, ERROR], &[ROLL], "against: path and transmission_error: each", &[PATH, ERROR]),
         // what is met anyway does not take part
         (&[NEAR, PATH, ERROR], &[ROLL], "against: path and transmission_error: each", &[PATH, ERROR]),
@@ -350,6 +350,26 @@ fn wishes_that_stand_against_each_other_are_named() {
             &["shift"],
             "against: no search meets lengthwise",
             &["lengthwise: 0.5"],
+        ),
+        // a search for one of the others alone may lead off the flanks: that does not stand against it
+        (
+            &[
+                "lengthwise: 0.45",
+                "profilewise: 0.6",
+                "path: about(10 deg, 1 deg)",
+                "ellipse: 0.2 mm",
+                "transmission_error: 20 arcsec",
+            ],
+            &[
+                "p.radial_distance",
+                "p.work_offset",
+                "p.sliding_base",
+                "p.ratio_of_roll",
+                ROLL,
+                "pinion_cutter.blade_angle",
+            ],
+            "against: no search meets ellipse",
+            &["ellipse: 0.2 mm"],
         ),
     ];
     for (wishes, vary, told, against) in cases {

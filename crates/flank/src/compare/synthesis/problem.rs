@@ -137,15 +137,20 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// Conditions that no search meets together: without any one of them the others are met. One alone
     /// where it is not met by itself.
     pub(super) fn against(&self, is_met: impl Fn(&[usize], &ContactPoint) -> bool) -> Vec<usize> {
-        let mut against: Vec<usize> = (0..self.wishes.len()).collect();
-        for k in 0..self.wishes.len() {
-            let rest: Vec<usize> = against.iter().copied().filter(|of| *of != k).collect();
-            if rest.is_empty() {
-                break;
-            }
-            let wishes = rest.iter().map(|k| self.wishes[*k]).collect();
+        let are_met = |of: &[usize]| {
+            let wishes = of.iter().map(|k| self.wishes[*k]).collect();
             let found = self.synthesis(wishes, &self.unknowns).solve();
-            if !found.is_some_and(|found| is_met(&rest, &found.vertex)) {
+            found.is_some_and(|found| is_met(of, &found.vertex))
+        };
+        let all = 0..self.wishes.len();
+        // a search that meets nothing takes long: one condition that is out of reach would be in several
+        if let Some(alone) = all.clone().find(|k| !are_met(&[*k])) {
+            return vec![alone];
+        }
+        let mut against: Vec<usize> = all.clone().collect();
+        for k in all {
+            let rest: Vec<usize> = against.iter().copied().filter(|of| *of != k).collect();
+            if rest.len() > 1 && !are_met(&rest) {
                 against = rest;
             }
         }
