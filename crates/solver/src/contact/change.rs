@@ -63,8 +63,8 @@ impl ContactChange {
 }
 
 impl ContactProblem {
-    /// What a change of parameters changes, each by its number with its share in the change, which shares of one parameter add up to: at the vertex of the lag, if the point is it
-    /// and stays it, else at the same roll position. `None` where the contact is singular.
+    /// What a change of parameters changes, each by its number with its share in the change; shares of one parameter add up. At the vertex of the
+    /// lag, if the point is it and stays it, else at the same roll position. `None` where the contact is singular.
     pub fn change(&self, at: &ContactPoint, of: &[(usize, f64)], is_vertex: bool) -> Option<ContactChange> {
         let (by_roll, mut changes) = self.changes(at, &[of.to_vec()])?;
         let held = changes.pop()?;
