@@ -135,17 +135,17 @@ pub fn lowest_beside(
     let mut best = Cusp { share: start, height: height(start)? };
     for _ in 0..STEPS_BESIDE {
         let [before, after] = [-apart, apart].map(|by| height(best.share + by));
-        let by = match (before, after) {
-            (Some(before), Some(after)) => {
-                let (slope, bend) = (0.5 * (after - before), before - 2.0 * best.height + after);
-                if bend > 0.0 { (-slope / bend).clamp(-1.0, 1.0) } else { -slope.signum() }
-            }
-            _ => 0.0,
+        let (Some(before), Some(after)) = (before, after) else {
+            // so far away the cutter does not pass
+            apart *= NEARER;
+            continue;
         };
+        let (slope, bend) = (0.5 * (after - before), before - 2.0 * best.height + after);
+        let by = if bend > 0.0 { (-slope / bend).clamp(-1.0, 1.0) } else { -slope.signum() };
         let found = height(best.share + by * apart).map(|height| Cusp { share: best.share + by * apart, height });
-        let lower = found.map_or(0.0, |found| best.height - found.height);
-        best = found.filter(|_| lower > 0.0).unwrap_or(best);
-        if by.abs() < 1.0 && lower.abs() < LOWER {
+        let lower = found.map(|found| best.height - found.height);
+        best = found.filter(|found| found.height < best.height).unwrap_or(best);
+        if by.abs() < 1.0 && lower.is_some_and(|lower| lower.abs() < LOWER) {
             break;
         }
         apart *= if by.abs() < 1.0 { NEARER } else { 1.0 };
@@ -202,6 +202,20 @@ fn vertex([a, b, c]: [(f64, f64); 3]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::milling::outline::OutlinePiece;
+
+    /// Far from where it is lowest a small ball does not pass over the line at all.
+    #[test]
+    fn a_block_is_lowest_beside_places_that_it_does_not_pass() {
+        let across = PoseSeries::sampled(3, |share| [4.0 * share - 2.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+        let block = PoseSeries::sampled(3, |share| [0.3, share - 0.5, -0.02, 0.0, 0.0, 1.0]);
+        let ball = OutlinePiece::Arc { center: [0.0, 1.0], radius: 1.0, between: [0.0, std::f64::consts::FRAC_PI_2] };
+        let cutter = Cutter { pieces: vec![ball] };
+        for apart in [0.5, 0.3, 0.1] {
+            let found = lowest_beside(&across, &block, (0.5, apart), 0.5, &cutter).expect("it passes");
+            assert!((found.height + 0.02).abs() < 1e-9 && (found.share - 0.575).abs() < 1e-4, "{apart}: {found:?}");
+        }
+    }
 
     #[test]
     fn a_peak_is_found_within_its_ends_and_at_them() {

@@ -4,7 +4,7 @@
 //! is looked for with these, then with those at the place that was found, and again: an error of the place counts by its square.
 
 use crate::milling::distance::{APART, Nearest, Obstacle, Positions, least_value};
-use crate::milling::guard::{Guard, Struck};
+use crate::milling::guard::{Guard, Struck, nearer};
 use crate::milling::series::PoseSeries;
 
 /// A way is looked at in parts on which no point of the body moves farther than this, mm; in so many at the most.
@@ -116,10 +116,6 @@ impl Part<'_, '_> {
         }
         best
     }
-}
-
-fn nearer(a: Struck, b: Struck) -> Struck {
-    if b.distance < a.distance { b } else { a }
 }
 
 impl Guard<'_> {

@@ -88,10 +88,11 @@ impl PoseSeries {
         out
     }
 
-    /// How fast position (mm) and direction change with the share at the most.
-    pub(crate) fn rates(&self) -> [f64; 2] {
-        let each =
-            self.coefficients.iter().enumerate().map(|(degree, c)| lengths(c).map(|length| fastest(degree) * length));
+    /// How fast the position so far along the direction (mm) and the direction change with the share at the most.
+    pub(crate) fn rates(&self, along: f64) -> [f64; 2] {
+        let place = |c: &[f64; 6]| [c[0] + along * c[3], c[1] + along * c[4], c[2] + along * c[5], c[3], c[4], c[5]];
+        let of_degree = |(degree, c)| lengths(&place(c)).map(|length| fastest(degree) * length);
+        let each = self.coefficients.iter().enumerate().map(of_degree);
         each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d])
     }
 

@@ -12,8 +12,6 @@ use crate::milling::series::PoseSeries;
 const NODES: usize = 13;
 /// Pieces of a pass at the least: short ones reach less far.
 const PIECES: usize = 32;
-/// How much farther than the ends of a piece its middle part may lie from the middle: pieces bend little.
-const BENT: f64 = 1.25;
 
 /// A point that lies deeper than this within the cutter, mm, is cut deep, and its height is looked for over the whole way ...
 const DEEP: f64 = 2e-3;
@@ -109,8 +107,8 @@ impl SweptCutter {
         let ball = Ball::around(&body.pieces);
         let way = |(number, series): (usize, PoseSeries)| {
             let middle = series.at(0.5);
-            let moved = |share: f64| ball.moved(&middle, &series.at(share));
-            let reach = BENT * moved(0.0).max(moved(1.0));
+            // half of the way, however unevenly the cutter goes
+            let reach = 0.5 * ball.fastest(&series);
             Way { middle, reach, number, series }
         };
         let ways: Vec<Way> = ways.into_par_iter().map(way).collect();
@@ -362,10 +360,10 @@ impl Ball {
         [0, 1, 2].map(|k| pose[k] + self.z * pose[3 + k])
     }
 
-    /// How far a point in the ball moves from one pose to another, at the most.
-    fn moved(self, from: &[f64; 6], to: &[f64; 6]) -> f64 {
-        let turned = (3..6).map(|k| (from[k] - to[k]).powi(2)).sum::<f64>().sqrt();
-        distance(self.center(from), self.center(to)) + self.radius * turned
+    /// How fast a point in the ball moves with the share of a way, at the most.
+    fn fastest(self, way: &PoseSeries) -> f64 {
+        let [moved, turned] = way.rates(self.z);
+        moved + self.radius * turned
     }
 
     /// The distance of a point; negative inside.
@@ -376,4 +374,21 @@ impl Ball {
 
 fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A cutter that hardly moves at first and is fast at last passes a point between places at which it is far away on both sides.
+    #[test]
+    fn a_cutter_that_is_fast_at_last_passes_what_lies_there() {
+        let ball = OutlinePiece::Arc { center: [0.0, 0.05], radius: 0.05, between: [0.0, std::f64::consts::FRAC_PI_2] };
+        let cutter = Cutter { pieces: vec![ball] };
+        let fast = PoseSeries::sampled(5, |s| [20.0 * s.powi(3), 0.0, -0.01, 0.0, 0.0, 1.0]);
+        let above = PoseSeries::sampled(5, |s| [16.7 + 1e-3 * s, 0.0, 0.25, 0.0, 0.0, 1.0]);
+        let swept = SweptCutter::of_blocks(vec![fast, above], &cutter);
+        let left = swept.left(&[16.7, 0.0, 0.0, 0.0, 0.0, 1.0]).expect("both pass");
+        assert!(left.way == 0 && (left.height + 0.01).abs() < 1e-9, "{left:?}");
+    }
 }

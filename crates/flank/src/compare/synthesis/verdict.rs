@@ -141,7 +141,7 @@ fn why(
     let is_told = !reasons.is_empty();
     // steps stand in the way of what is possible without
     if !(0..problem.settings.len()).any(|k| problem.is_rounded(k)) {
-        reasons.extend(against(conditions, problem, found));
+        reasons.extend(against(conditions, problem));
     }
     reasons.extend(compromise(conditions, found));
     if !is_told {
@@ -166,12 +166,11 @@ fn why(
 }
 
 /// Which conditions stand against each other; where flanks end is told by itself.
-fn against(conditions: &[Condition], problem: &Problem<'_, '_>, found: &SynthesizedContact) -> Option<String> {
-    let are_met = |of: &[usize], at: &ContactPoint| of.iter().all(|k| conditions[*k].is_met_at(at));
-    let all: Vec<usize> = (0..conditions.len()).collect();
-    if conditions.len() < 2 || are_met(&all, &found.vertex) {
+fn against(conditions: &[Condition], problem: &Problem<'_, '_>) -> Option<String> {
+    if conditions.len() < 2 {
         return None;
     }
+    let are_met = |of: &[usize], at: &ContactPoint| of.iter().all(|k| conditions[*k].is_met_at(at));
     let names: Vec<&str> = problem.against(are_met).into_iter().map(|k| conditions[k].of.of.name()).collect();
     Some(match names[..] {
         [one] => format!("against: no search meets {one} with these settings, even where nothing else is wanted"),

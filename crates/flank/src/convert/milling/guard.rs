@@ -177,9 +177,7 @@ impl<'f, 'j, 'g> Guards<'f, 'j, 'g> {
         let depth = |(alike, hit): &(Alike, Hit)| {
             let part = &moves[alike.first].parts(axes, TURNED)[hit.part];
             let (_, guard) = guards.iter().find(|(number, _)| *number == hit.guard).expect("it is one of them");
-            let series = part.series(axes);
-            let deepest = guard.deepest(&series, hit.struck, STEP);
-            Hit { struck: guard.sharpened(&series, deepest), ..*hit }
+            Hit { struck: guard.deepest(&part.series(axes), hit.struck, STEP), ..*hit }
         };
         let depths: Vec<Hit> = hits[..hits.len().min(MOST)].par_iter().map(depth).collect();
         Some((depths.into_iter().reduce(deeper)?, hits.iter().map(|(alike, _)| alike.count).sum()))
