@@ -103,7 +103,7 @@ pub struct ConvertRequest {
     pub onto: Onto,
     /// Settings of the machine that are looked for beside those without a value.
     pub fit: Vec<String>,
-    /// Starts from which settings are looked for before the nearest are taken; [`FIT_STARTS`] do for most machines.
+    /// Starts from which settings are looked for before the nearest are taken; [`FIT_STARTS`](super::FIT_STARTS) do for most machines.
     pub starts: u32,
     /// Positions over the motion.
     pub positions: u32,
