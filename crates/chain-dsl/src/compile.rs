@@ -74,8 +74,8 @@ pub struct Request<'a> {
     /// A file whose last machine stands by itself: with the values that its settings have by default, or by `set` such as
     /// `free_form.root=10 deg`, and free axes.
     pub machine: Option<&'a Path>,
-    /// The job that `set` is meant for; all of the file otherwise.
-    pub job: Option<&'a str>,
+    /// The jobs that `set` is meant for; all of the file where none is named, or one that the file does not have.
+    pub jobs: Vec<&'a str>,
     /// Pairs of a name (`ratio`, `m.swivel`, in one job only `gear.m.swivel`) and a value as text (`2 mm`) that win over what the
     /// text says.
     pub set: &'a [(String, String)],
@@ -86,7 +86,7 @@ pub struct Request<'a> {
 
 impl Default for Request<'_> {
     fn default() -> Self {
-        Request { files: Arc::new(Disk), machine: None, job: None, set: &[], whole: true }
+        Request { files: Arc::new(Disk), machine: None, jobs: Vec::new(), set: &[], whole: true }
     }
 }
 
@@ -249,8 +249,10 @@ fn build_jobs<'g>(
     (main, request, overrides): (Option<FileId>, &Request<'_>, &OuterValues),
     sources: &Sources,
 ) -> Vec<Job<'g>> {
-    let is_asked =
-        |item: &JobItem| Some(item.file) == main && request.job.is_none_or(|wanted| wanted == item.job.name.node);
+    let is_own = |item: &JobItem| Some(item.file) == main;
+    let is_there = |wanted: &&str| items.jobs.iter().any(|item| is_own(item) && item.job.name.node == *wanted);
+    let are_named = !request.jobs.is_empty() && request.jobs.iter().all(is_there);
+    let is_asked = |item: &JobItem| is_own(item) && (!are_named || request.jobs.contains(&item.job.name.node.as_str()));
     let mut built: Vec<Option<Job<'g>>> = items.jobs.iter().map(|_| None).collect();
     for (place, item) in items.jobs.iter().enumerate() {
         if request.whole || is_asked(item) {
@@ -262,13 +264,13 @@ fn build_jobs<'g>(
     // a value from outside may be one of a job that is not asked for, which has to be said
     let is_had = |name: &Name| built.iter().flatten().any(|job| job.has_parameter(&name.node));
     if !overrides.names.iter().all(is_had) {
-        for (place, item) in items.jobs.iter().enumerate().filter(|(_, item)| Some(item.file) == main) {
+        for (place, item) in items.jobs.iter().enumerate().filter(|(_, item)| is_own(item)) {
             if built[place].is_none() {
                 built[place] = build_job(context, items, (item, is_asked(item)), overrides, sources);
             }
         }
     }
-    let of_main = items.jobs.iter().zip(built).filter(|(item, _)| Some(item.file) == main);
+    let of_main = items.jobs.iter().zip(built).filter(|(item, _)| is_own(item));
     of_main.filter_map(|(_, job)| job).collect()
 }
 

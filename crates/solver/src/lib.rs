@@ -28,7 +28,7 @@ mod surface;
 pub use analysis::adjustment::choice::{linear_rest, most_effective, most_independent, opposed, separated};
 pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
 pub use analysis::adjustment::shapes::Shapes;
-pub use analysis::adjustment::{AdjustableSurface, Foot, FootSearch, NearFoot};
+pub use analysis::adjustment::{AdjustableSurface, Foot, FootSearch, NearFoot, StartOfFoot};
 pub use analysis::alignment::Alignment;
 pub use analysis::cutting::{CuttingEdges, ScallopHeight};
 pub use analysis::deviation::{Deviation, EaseOff};

@@ -431,7 +431,7 @@ fn a_job_is_compiled_without_those_that_nobody_asks_for() {
     let file = folder.join("jobs/j.chain");
     let found = |whole: bool, set: &[(String, String)]| {
         let graph = Graph::new();
-        let request = Request { job: Some("j"), set, whole, ..Request::default() };
+        let request = Request { jobs: vec!["j"], set, whole, ..Request::default() };
         let compilation = compile_request(&graph, &file, &request);
         let names: Vec<String> = compilation.jobs.iter().map(|job| job.name.clone()).collect();
         let is_indexed = !compilation.index.entries.is_empty();
@@ -485,7 +485,7 @@ fn a_name_that_could_be_two_things_is_told() {
     let value = |name: &str, of: &str| {
         let graph = Graph::new();
         let set = [(name.to_string(), "2 mm".to_string())];
-        let compilation = compile_request(&graph, &file, &Request { job: Some("m"), set: &set, ..Request::default() });
+        let compilation = compile_request(&graph, &file, &Request { jobs: vec!["m"], set: &set, ..Request::default() });
         let parameters = &compilation.jobs[0].parameters;
         parameters.iter().find(|parameter| parameter.name == of).expect("a parameter").value
     };

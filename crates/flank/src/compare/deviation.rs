@@ -58,7 +58,9 @@ pub fn deviation(request: &DeviationRequest, monitor: &dyn Monitor) -> Result<De
         }
     };
     let graph = Graph::new();
-    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let among = request.reference.as_ref().filter(|_| request.reference_jobs.is_none());
+    let surfaces: Vec<&str> = [&request.surface].into_iter().chain(among).map(String::as_str).collect();
+    let (compilation, jobs) = spec::jobs_of_surfaces(&graph, &request.jobs, &surfaces, monitor)?;
     let mut origin = Origin::of_compilation(&compilation);
     let other_graph = Graph::new();
     let others = request.reference_jobs.as_ref().map(|others| spec::jobs(&other_graph, others, monitor)).transpose()?;

@@ -18,6 +18,7 @@ use crate::project::session::Session;
 use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::solve;
+use crate::solve::Branch;
 use crate::solve::SolveOptions;
 use crate::solve::arrays::PointGrid;
 
@@ -114,8 +115,8 @@ pub(crate) struct Placed<'j, 'g> {
     sample: &'j Sample<'g>,
     ends: FlankEnds,
     margins: [f64; 2],
-    /// Unknowns of the point in the middle, where that tells the branch.
-    start: Option<Vec<f64>>,
+    /// Its branch, where the middle of the sample tells it.
+    branch: Option<Branch<'g>>,
     session: Session<'j>,
 }
 
@@ -149,8 +150,8 @@ impl<'j, 'g> Placed<'j, 'g> {
         let axes = [0, 1].map(|k| Axis { label: sample.labels[k].clone(), count: TRIAL });
         // what is cut away lies between the same ends
         let mut found = solve::untrimmed(job, surface, &trial, session);
-        let start = found.start().map(<[f64]>::to_vec);
-        if start.is_none() {
+        let branch = found.branch(&trial);
+        if branch.is_none() {
             found = solve::points(job, surface, &trial, wanted(session));
         }
         if let Some(branches) = found.ambiguous(surface, &trial) {
@@ -161,7 +162,7 @@ impl<'j, 'g> Placed<'j, 'g> {
             "the grid of `{name}` does not tell root and tip from the length of the tooth; a sample between the corners of the blank \
              does: `toe_root: [z, rho]`, …"
         ))?;
-        Ok(Placed { job, surface, sample, ends, margins, start, session })
+        Ok(Placed { job, surface, sample, ends, margins, branch, session })
     }
 
     /// Points at shares from root to tip and along the tooth.
@@ -192,9 +193,9 @@ impl<'j, 'g> Placed<'j, 'g> {
     pub(crate) fn solved(&self, sample: &Sample<'g>) -> Result<Vec<SurfacePoint>, Failure> {
         let _working = self.session.begin(format!("solving {}", self.surface.name))?;
         // of other numbers of points none lies in the middle
-        let start = self.start.as_deref().filter(|_| sample.counts.iter().all(|count| count % 2 == 1));
+        let branch = self.branch.as_ref().filter(|_| sample.counts.iter().all(|count| count % 2 == 1));
         let known =
-            start.and_then(|start| solve::points_of_branch(self.job, self.surface, (sample, start), self.session));
+            branch.and_then(|branch| solve::points_of_branch(self.job, self.surface, (sample, branch), self.session));
         Ok(known.unwrap_or_else(|| solve::points(self.job, self.surface, sample, wanted(self.session)).points))
     }
 

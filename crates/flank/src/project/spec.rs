@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, Files, GeneratedSurface, Job, Sources, compile_request, read_other_file};
+use flank_chain_dsl::{Compilation, Files, GeneratedSurface, Job, Request, Sources, compile_request, read_other_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -21,8 +21,35 @@ pub(crate) fn jobs<'g>(
     which: &JobSelection,
     monitor: &dyn Monitor,
 ) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
+    jobs_of(graph, which, which.request(), monitor)
+}
+
+/// The jobs that are asked for, without those that none of these surfaces can be of: `basic.concave` is one of job `basic`.
+///
+/// # Errors
+/// What is wrong with the spec.
+pub(crate) fn jobs_of_surfaces<'g>(
+    graph: &'g Graph,
+    which: &JobSelection,
+    surfaces: &[&str],
+    monitor: &dyn Monitor,
+) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
+    let mut request = which.request();
+    let named: Option<Vec<&str>> = surfaces.iter().map(|surface| surface.split_once('.').map(|(job, _)| job)).collect();
+    if request.jobs.is_empty() {
+        request.jobs = named.unwrap_or_default();
+    }
+    jobs_of(graph, which, request, monitor)
+}
+
+fn jobs_of<'g>(
+    graph: &'g Graph,
+    which: &JobSelection,
+    request: Request<'_>,
+    monitor: &dyn Monitor,
+) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
     which.check()?;
-    let mut compilation = sound(compile_request(graph, which.file(), &which.request()), monitor)?;
+    let mut compilation = sound(compile_request(graph, which.file(), &request), monitor)?;
     let jobs = asked_for(&mut compilation, which, monitor)?;
     Ok((compilation, jobs))
 }

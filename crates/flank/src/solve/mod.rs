@@ -45,7 +45,7 @@ use self::limits::Line;
 pub(crate) use self::options::SolveOptions;
 pub(crate) use self::points::{patch, unit};
 use self::result::{Instructions, SolveResult};
-pub(crate) use self::sampled::{points, points_of_branch, solve_side_by_side, solve_surface, untrimmed};
+pub(crate) use self::sampled::{Branch, points, points_of_branch, solve_side_by_side, solve_surface, untrimmed};
 use self::solved::Solved;
 use self::step::Smooth;
 pub(crate) use self::surface::{bound, family, followed, kept, problem, ranges};

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
+use flank_expr::Expr;
 use flank_solver::{GridReport, Outcome, Solution, SurfacePoint, SurfaceProblem};
 use rayon::prelude::*;
 
@@ -121,14 +122,25 @@ pub(crate) struct Found<'j, 'g> {
     positions: Positions,
 }
 
+/// A branch of a surface, as a sample that lies on it alone shows it.
+pub(crate) struct Branch<'g> {
+    problem: Arc<SurfaceProblem>,
+    coordinates: [Expr<'g>; 2],
+    /// Unknowns of the point in the middle of the sample.
+    start: Vec<f64>,
+}
+
 impl<'g> Found<'_, 'g> {
-    /// Unknowns of the point in the middle, where nothing but the branch through it is in question: all points of the sample lie on it, and there
-    /// is no other one.
-    pub(crate) fn start(&self) -> Option<&[f64]> {
+    /// The branch of a sample, where nothing but that is in question: all its points lie on it, and there is no other one.
+    pub(crate) fn branch(&self, sample: &Sample<'g>) -> Option<Branch<'g>> {
         let is_whole = self.points.iter().all(|point| point.outcome == Outcome::Solved);
         let is_alone = self.effort.branches.len() == 1 && self.effort.elsewhere.is_empty();
         let middle = self.points.get(self.points.len() / 2)?;
-        (is_whole && is_alone).then_some(&middle.unknowns[..])
+        (is_whole && is_alone).then(|| Branch {
+            problem: Arc::clone(&self.problem),
+            coordinates: values(sample),
+            start: middle.unknowns.clone(),
+        })
     }
 
     /// The branches that qualify where nothing chooses between several, with what would select each.
@@ -158,7 +170,7 @@ pub(crate) fn points<'j, 'g>(
     wanted: SolveOptions,
 ) -> Found<'j, 'g> {
     let (of, session) = ((job, surface), wanted.session);
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = values(sample);
     let solved = || as_solved(problem(job, surface, coordinates, session), sample);
     let mut trims = Vec::new();
     let found = if surface.trimmed_by.is_empty() {
@@ -181,7 +193,7 @@ pub(crate) fn solve_side_by_side<'g>(job: &Job<'g>, surfaces: &[&GeneratedSurfac
     let sampled = || surfaces.iter().filter_map(|surface| Some((*surface, surface.sample.as_ref()?)));
     // expressions stay on the thread of their graph
     let asked = sampled().map(|(surface, sample)| {
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = values(sample);
         let tool = surface.trimmed_by.is_empty().then(|| secondary::tool_positions(job, surface, &job.bindings()));
         (problem(job, surface, coordinates, session), tool, (sample.targets(), sample.counts))
     });
@@ -210,24 +222,27 @@ pub(crate) fn untrimmed<'j, 'g>(
     sample: &Sample<'g>,
     session: Session<'_>,
 ) -> Found<'j, 'g> {
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = values(sample);
     let solved = || as_solved(problem(job, surface, coordinates, session), sample);
     let FoundPoints { problem, points, effort, .. } = session.sample((job, surface), sample, SOLVED, solved);
     let positions = Positions::Unseen("all other positions");
     Found { problem, points, effort, trims: Vec::new(), positions }
 }
 
-/// The points of a part of a sample whose branch is known by the unknowns of its point in the middle: as [`points`] has them, without another search for
-/// it. `None` where not all are reached so.
+/// The points of a part of a sample, with the same middle, whose branch is known: as [`points`] has them, without another search for it. `None`
+/// where not all are reached so.
 pub(crate) fn points_of_branch<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
-    (sample, start): (&Sample<'g>, &[f64]),
+    (sample, branch): (&Sample<'g>, &Branch<'g>),
     session: Session<'_>,
 ) -> Option<Vec<SurfacePoint>> {
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
-    let problem = problem(job, surface, coordinates, session);
-    let (points, effort) = problem.solve_points(&sample.targets(), sample.counts, Some(start), None);
+    let coordinates = values(sample);
+    let problem = match coordinates == branch.coordinates {
+        true => Arc::clone(&branch.problem),
+        false => Arc::new(problem(job, surface, coordinates, session)),
+    };
+    let (points, effort) = problem.solve_points(&sample.targets(), sample.counts, Some(&branch.start), None);
     let mut points: Vec<SurfacePoint> = (0..points.len()).map(|k| points.point(k)).collect();
     if points.iter().any(|point| point.outcome != Outcome::Solved) {
         return None;
@@ -235,8 +250,12 @@ pub(crate) fn points_of_branch<'g>(
     for (number, &by) in surface.trimmed_by.iter().enumerate() {
         trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, session));
     }
-    let found = FoundPoints { problem: Arc::new(problem), points, effort, positions: None };
+    let found = FoundPoints { problem, points, effort, positions: None };
     Some(judged((job, surface), sample, found).points)
+}
+
+fn values<'g>(sample: &Sample<'g>) -> [Expr<'g>; 2] {
+    sample.coordinates.each_ref().map(|coordinate| coordinate.value)
 }
 
 /// What is asked of samples: their points as the equations have them, and without those that are cut away.
@@ -292,7 +311,7 @@ fn kept_out<'g>(
     let is_kept = |sample: &&Sample<'g>| !sample.keep.is_empty();
     let is_nothing = summary.solved() == 0 && effort.branches.is_empty();
     let Some(sample) = surface.sample.as_ref().filter(is_kept).filter(|_| is_nothing) else { return Vec::new() };
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = values(sample);
     let problem = on_any_branch(job, surface, coordinates, session);
     let found = problem.all_points(effort.anchor);
     let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();

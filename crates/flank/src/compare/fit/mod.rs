@@ -39,7 +39,9 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
     let start = Instant::now();
     check(request)?;
     let graph = Graph::new();
-    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let among = request.from.as_ref().filter(|_| request.from_jobs.is_none());
+    let surfaces: Vec<&str> = [&request.surface].into_iter().chain(among).map(String::as_str).collect();
+    let (compilation, jobs) = spec::jobs_of_surfaces(&graph, &request.jobs, &surfaces, monitor)?;
     let mut origin = Origin::of_compilation(&compilation);
     let session = Session::new(request.evaluator, monitor);
     let of = find(&jobs, &request.surface)?;

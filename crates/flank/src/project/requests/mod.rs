@@ -44,7 +44,13 @@ impl JobSelection {
 
     pub(crate) fn request(&self) -> Request<'_> {
         let files = self.project.shared_files();
-        Request { files, job: self.job.as_deref(), set: &self.set, whole: false, ..Request::default() }
+        Request {
+            files,
+            jobs: self.job.as_deref().into_iter().collect(),
+            set: &self.set,
+            whole: false,
+            ..Request::default()
+        }
     }
 
     /// # Errors

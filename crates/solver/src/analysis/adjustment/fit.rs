@@ -3,7 +3,7 @@
 use faer::Mat;
 
 use super::shapes::Shapes;
-use super::{AdjustableSurface, Foot, NearFoot};
+use super::{AdjustableSurface, Foot, NearFoot, StartOfFoot};
 use crate::analysis::alignment::Alignment;
 use crate::newton::least_squares::{LeastSquares, LeastSquaresFit, Linearized, ScaledUnknown};
 
@@ -91,19 +91,21 @@ impl SettingsAdjustment<'_> {
             settled: SETTLED,
             given_up: None,
         };
-        let mut near: Vec<Vec<NearFoot>> = self.surfaces().map(|wanted| wanted.near.clone()).collect();
+        let near: Vec<&[NearFoot]> = self.surfaces().map(|wanted| &wanted.near[..]).collect();
         // with the values that they are of
-        let mut last = (Vec::new(), Vec::new());
+        let mut last: (Vec<f64>, Vec<Vec<Foot>>) = (Vec::new(), Vec::new());
         let fit = problem.solve(|values| {
-            let feet = self.feet(values, &near)?;
-            near = feet.iter().map(|feet| feet.iter().map(Foot::near).collect()).collect();
+            let feet = match &last.1[..] {
+                [] => self.feet(values, &near)?,
+                last => self.feet(values, last)?,
+            };
             let (wanted, kept) = feet.split_at(self.wanted.len());
             let told = linearized([wanted, kept], (values.len(), self.alignment), self.shapes.as_ref());
             last = (values.to_vec(), feet);
             Some(told)
         })?;
         let (values, feet) = last;
-        let mut feet = if values == fit.values { feet } else { self.feet(&fit.values, &near)? };
+        let mut feet = if values == fit.values { feet } else { self.feet(&fit.values, &feet)? };
         feet.truncate(self.wanted.len());
         Some(AdjustedSurfaces { fit, feet, alignment: self.alignment })
     }
@@ -113,16 +115,16 @@ impl SettingsAdjustment<'_> {
     }
 
     /// All feet with these settings and this motion; `None` if one is missing.
-    fn feet(&self, values: &[f64], near: &[Vec<NearFoot>]) -> Option<Vec<Vec<Foot>>> {
+    fn feet<S: StartOfFoot>(&self, values: &[f64], near: &[impl AsRef<[S]>]) -> Option<Vec<Vec<Foot>>> {
         let (settings, motions) = values.split_at(self.settings.len());
-        let of = |(surface, (wanted, near)): (usize, (&WantedPoints<'_>, &Vec<NearFoot>))| {
+        let of = |(surface, wanted): (usize, &WantedPoints<'_>)| {
             let is_further = surface > 0 && surface < self.wanted.len();
             let further = motions.get(surface).copied().filter(|_| is_further).unwrap_or_default();
             let points: Vec<[f64; 3]> =
                 wanted.points.iter().map(|point| self.alignment.moved(*point, motions[0] + further)).collect();
-            wanted.surface.at(settings).feet(&points, near).into_iter().collect::<Option<Vec<Foot>>>()
+            wanted.surface.at(settings).feet(&points, near[surface].as_ref()).into_iter().collect::<Option<Vec<Foot>>>()
         };
-        self.surfaces().zip(near).enumerate().map(of).collect()
+        self.surfaces().enumerate().map(of).collect()
     }
 }
 

@@ -60,6 +60,24 @@ pub struct NearFoot {
     pub distance: f64,
 }
 
+/// What a search for a foot starts from.
+pub trait StartOfFoot: Sync {
+    /// Of the surface.
+    fn unknowns(&self) -> &[f64];
+    /// How far the point lies off the surface, mm.
+    fn distance(&self) -> f64;
+}
+
+impl StartOfFoot for NearFoot {
+    fn unknowns(&self) -> &[f64] {
+        &self.unknowns
+    }
+
+    fn distance(&self) -> f64 {
+        self.distance
+    }
+}
+
 /// Where the surface's normal goes through a point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foot {
@@ -75,9 +93,14 @@ pub struct Foot {
     pub moved: Vec<f64>,
 }
 
-impl Foot {
-    pub(super) fn near(&self) -> NearFoot {
-        NearFoot { unknowns: self.unknowns.clone(), distance: self.distance }
+/// That of the same point on a surface that was moved a little.
+impl StartOfFoot for Foot {
+    fn unknowns(&self) -> &[f64] {
+        &self.unknowns
+    }
+
+    fn distance(&self) -> f64 {
+        self.distance
     }
 }
 
@@ -134,55 +157,73 @@ impl FootSearch {
     ///
     /// # Panics
     /// If there are not as many starts as points.
-    pub fn feet(&self, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
+    pub fn feet(&self, points: &[[f64; 3]], near: &[impl StartOfFoot]) -> Vec<Option<Foot>> {
         assert_eq!(points.len(), near.len(), "a start for each point");
+        let part = |(points, near)| self.part(points, near);
         if points.len() <= FEW {
-            let mut evaluators = Evaluators::new(self);
-            let tiles = points.chunks(LANES).zip(near.chunks(LANES));
-            return tiles.flat_map(|(points, near)| self.tile(&mut evaluators, points, near)).collect();
+            return part((points, near));
         }
-        let tiles = points.par_chunks(LANES).zip(near.par_chunks(LANES));
-        let found: Vec<Vec<Option<Foot>>> = tiles
-            .map_init(|| Evaluators::new(self), |evaluators, (points, near)| self.tile(evaluators, points, near))
-            .collect();
-        found.into_iter().flatten().collect()
+        // whole tiles, and tools once for each thread
+        let own = points.len().div_ceil(rayon::current_num_threads()).next_multiple_of(LANES);
+        let parts: Vec<Vec<Option<Foot>>> = points.par_chunks(own).zip(near.par_chunks(own)).map(part).collect();
+        parts.into_iter().flatten().collect()
+    }
+
+    fn part(&self, points: &[[f64; 3]], near: &[impl StartOfFoot]) -> Vec<Option<Foot>> {
+        let mut evaluators = Evaluators::new(self);
+        let mut feet = Vec::with_capacity(points.len());
+        for (points, near) in points.chunks(LANES).zip(near.chunks(LANES)) {
+            self.tile(&mut evaluators, (points, near), &mut feet);
+        }
+        feet
     }
 
     /// As many points as there are lanes at the most, at once; what needs care is solved alone.
-    fn tile(&self, evaluators: &mut Evaluators<'_>, points: &[[f64; 3]], near: &[NearFoot]) -> Vec<Option<Foot>> {
+    fn tile(
+        &self,
+        evaluators: &mut Evaluators<'_>,
+        (points, near): (&[[f64; 3]], &[impl StartOfFoot]),
+        feet: &mut Vec<Option<Foot>>,
+    ) {
         let Evaluators { newton, at_foot } = evaluators;
         // nothing is known of it at these starts
         *newton.determinant() = [f64::NAN; LANES];
         for (lane, (point, near)) in points.iter().zip(near).enumerate() {
-            newton.put(lane, near.unknowns.iter().copied().chain([near.distance]), point);
+            newton.put(lane, near.unknowns().iter().copied().chain([near.distance()]), point);
         }
-        newton.run(&vec![true; points.len()], true);
-        let mut roots = Vec::with_capacity(points.len());
-        for (lane, (point, near)) in points.iter().zip(near).enumerate() {
+        newton.run(&[true; LANES][..points.len()], true);
+        let roots: [Option<Vec<f64>>; LANES] = std::array::from_fn(|lane| {
+            let (point, near) = (points.get(lane)?, near.get(lane)?);
             let is_near = newton.is_root(lane) && newton.moved(lane) <= LONGEST_STEP;
-            roots.push(match is_near && newton.outcome(lane) == Outcome::Solved {
+            match is_near && newton.outcome(lane) == Outcome::Solved {
                 true => Some((0..self.ranges.len()).map(|k| newton.input(k)[lane]).collect()),
                 false => self.root(*point, near),
-            });
-        }
-        self.placed(at_foot, roots)
+            }
+        });
+        self.placed(at_foot, roots, points.len(), feet);
     }
 
     /// Unknowns and distance.
-    fn root(&self, point: [f64; 3], near: &NearFoot) -> Option<Vec<f64>> {
-        let start = [&near.unknowns, &[near.distance][..]].concat();
+    fn root(&self, point: [f64; 3], near: &impl StartOfFoot) -> Option<Vec<f64>> {
+        let start = [near.unknowns(), &[near.distance()][..]].concat();
         let solution = solve(&self.foot, &self.ranges, &point, &start);
         (solution.outcome == Outcome::Solved).then_some(solution.unknowns)
     }
 
-    fn placed(&self, evaluator: &mut LaneEvaluator<'_>, roots: Vec<Option<Vec<f64>>>) -> Vec<Option<Foot>> {
+    fn placed(
+        &self,
+        evaluator: &mut LaneEvaluator<'_>,
+        roots: [Option<Vec<f64>>; LANES],
+        count: usize,
+        feet: &mut Vec<Option<Foot>>,
+    ) {
         let size = self.ranges.len() - 1;
-        for (lane, root) in roots.iter().enumerate() {
+        for (lane, root) in roots[..count].iter().enumerate() {
             // where there is none nothing is read
             let known = root.iter().chain(roots.iter().flatten()).next();
             known.into_iter().for_each(|root| (0..size).for_each(|k| evaluator.input(k)[lane] = root[k]));
         }
-        evaluator.run_first(roots.len());
+        evaluator.run_first(count);
         let output = |k: usize, lane: usize| evaluator.output(k)[lane];
         let foot = |(lane, root): (usize, Option<Vec<f64>>)| {
             let mut unknowns = root?;
@@ -195,6 +236,6 @@ impl FootSearch {
                 moved: (0..self.settings).map(|k| output(6 + k, lane)).collect(),
             })
         };
-        roots.into_iter().enumerate().map(foot).collect()
+        feet.extend(roots.into_iter().take(count).enumerate().map(foot));
     }
 }

@@ -426,16 +426,15 @@ impl LeastSquaresFit {
     /// If there is no such residual.
     #[must_use]
     pub fn left_out(&self, rows: &[usize]) -> Option<Vec<f64>> {
-        let shared = |i: usize, j: usize| -> f64 {
-            self.basis.row(rows[i]).iter().zip(self.basis.row(rows[j]).iter()).map(|(a, b)| a * b).sum()
-        };
-        let count = rows.len();
-        let own = nalgebra::DMatrix::from_fn(count, count, |i, j| f64::from(i == j) - shared(i, j));
-        let residuals = nalgebra::DVector::from_fn(count, |i, _| self.residuals[rows[i]]);
+        // as (I - B Bt)^-1 r = r + B (I - Bt B)^-1 Bt r of the rows B of these: as large as the fit has directions, however many these are
+        let basis = nalgebra::DMatrix::from_fn(rows.len(), self.basis.ncols(), |i, k| self.basis[(rows[i], k)]);
+        let residuals = nalgebra::DVector::from_fn(rows.len(), |i, _| self.residuals[rows[i]]);
+        let own = nalgebra::DMatrix::identity(basis.ncols(), basis.ncols()) - basis.tr_mul(&basis);
         // the smallest eigenvalue is the share of a combination of these that the others leave to it
         let factors = own.cholesky()?;
-        let is_determined = factors.l_dirty().diagonal().min().powi(2) > OWN;
-        is_determined.then(|| factors.solve(&residuals).iter().copied().collect())
+        let is_determined = factors.l_dirty().diagonal().iter().all(|x| x * x > OWN);
+        is_determined
+            .then(|| (&residuals + &basis * factors.solve(&basis.tr_mul(&residuals))).iter().copied().collect())
     }
 
     /// The variance of the residuals that the fit leaves; `None` where as many directions are used as there are residuals.
