@@ -167,3 +167,20 @@ fn what_is_to_be_zero_is_zero() {
     assert_eq!(fit.held, [Some(RangeEnd::High), None]);
     assert!(fit.gradient[0] < 0.0, "it pushes outwards");
 }
+
+/// A residual that stays at 2 and bends: each whole step alone leaves an eighth of the one before, so that sixteen would be taken.
+#[test]
+fn steps_that_bend_alike_are_taken_together() {
+    let bent = |at: &[f64]| {
+        let [x, y] = [at[0], at[1]];
+        let residuals = vec![x - 1.0, y - 2.0, 2.0 + 0.03 * x * x + 0.001 * y * y];
+        rows(residuals, &[&[1.0, 0.0], &[0.0, 1.0], &[0.06 * x, 0.002 * y]])
+    };
+    let fit = problem(vec![unknown(0.0, EVERYWHERE); 2]).solve(bent).expect("finite");
+    assert_eq!(fit.end, SearchEnd::Settled);
+    assert!(fit.steps <= 8, "{} steps", fit.steps);
+    // x - 1 + 0.06 x r = 0 and y - 2 + 0.002 y r = 0 with the last residual r
+    let last = fit.residuals[2];
+    near(fit.values[0], 1.0 / (1.0 + 0.06 * last), 1e-12);
+    near(fit.values[1], 2.0 / (1.0 + 0.002 * last), 1e-12);
+}

@@ -36,6 +36,8 @@ const LEAST_DAMPED: f64 = 0.1;
 /// What is to be zero weighs so many times the force that it needs: twice for the sum of squares itself, of which the gradient is half, and
 /// as much again so that no step pays to leave it.
 const FORCED: f64 = 4.0;
+/// How much of a step the one before may say of it: more says that the model is not true there.
+const TOLD_AHEAD: f64 = 0.3;
 /// Residuals are known to this share of the change that settles them.
 const KNOWN: f64 = 0.1;
 
@@ -160,6 +162,21 @@ struct State {
     squares: f64,
     /// The Jacobian by those unknowns that were free when it was asked for last.
     decomposed: Option<(Vec<bool>, Rc<Decomposed>)>,
+    /// What led here.
+    before: Option<Before>,
+}
+
+/// A state before, with the whole step of the linear model there.
+struct Before {
+    values: Vec<f64>,
+    whole: WholeStep,
+}
+
+/// A step without damping that meets no further end and has nothing to bring to zero, in scales of the unknowns.
+#[derive(Clone)]
+struct WholeStep {
+    free: Vec<bool>,
+    by: Vec<f64>,
 }
 
 impl State {
@@ -197,6 +214,8 @@ struct Step {
     weight: f64,
     /// By how much both together fall.
     fall: f64,
+    /// What it is made from.
+    whole: Option<WholeStep>,
 }
 
 impl LeastSquares {
@@ -228,8 +247,10 @@ impl LeastSquares {
             let mut is_slow = false;
             let most = if step.fall < rounding { cost + rounding } else { cost };
             match trial.filter(|trial| trial.cost(step.weight) < most) {
-                Some(trial) => {
+                Some(mut trial) => {
                     steps += 1;
+                    let values = std::mem::take(&mut state.values);
+                    trial.before = step.whole.clone().map(|whole| Before { values, whole });
                     let gain = (cost - trial.cost(step.weight) + rounding) / (step.fall + rounding);
                     (damping, growth) = (step.after(damping, gain), GROWTH);
                     is_slow = trial.cost(step.weight) > SLOW * cost;
@@ -280,7 +301,7 @@ impl LeastSquares {
         let residuals = column(0, count);
         let jacobian = if self.exact == 0 { jacobian } else { jacobian.subrows(0, count).to_owned() };
         let squares = residuals.squared_norm_l2();
-        is_finite.then_some(State { values, residuals, jacobian, kept, squares, decomposed: None })
+        is_finite.then_some(State { values, residuals, jacobian, kept, squares, decomposed: None, before: None })
     }
 
     /// What the sum of squares changes by with each unknown, along what is to be zero: without the part of the gradient that only that
@@ -333,9 +354,35 @@ impl LeastSquares {
             let first = (0..fixed.len()).filter_map(beyond).min_by(|a, b| share(a).total_cmp(&share(b)));
             match first {
                 Some((reach, k)) => fixed[k] = Some(reach),
-                None => return self.stepped(state, &step, decomposed.squares(used)),
+                None => {
+                    let is_whole = self.exact == 0 && damping == 0.0 && fixed.iter().flatten().all(|end| *end == 0.0);
+                    let free = || fixed.iter().map(Option::is_none).collect();
+                    let whole = is_whole.then(|| WholeStep { free: free(), by: step.clone() });
+                    let ahead = whole.as_ref().and_then(|whole| self.ahead(state, whole));
+                    let step = self.stepped(state, &ahead.unwrap_or(step), decomposed.squares(used));
+                    return Step { whole, ..step };
+                }
             }
         }
+    }
+
+    /// Where much is left that no step takes away, each whole step leaves the same share of the one before, by how much the surface of the
+    /// residuals bends: a step that goes as far as all of these together (Anderson's acceleration of depth one). `None` where the last two do not
+    /// tell that.
+    fn ahead(&self, state: &State, whole: &WholeStep) -> Option<Vec<f64>> {
+        let before = state.before.as_ref().filter(|before| before.whole.free == whole.free)?;
+        let changed: Vec<f64> = whole.by.iter().zip(&before.whole.by).map(|(now, before)| now - before).collect();
+        let along = |of: &[f64]| changed.iter().zip(of).map(|(a, b)| a * b).sum::<f64>();
+        let share = along(&whole.by) / along(&changed);
+        if !(share.abs() <= TOLD_AHEAD) {
+            return None;
+        }
+        let of = |(k, unknown): (usize, &ScaledUnknown)| {
+            let taken = (state.values[k] - before.values[k]) / unknown.scale;
+            let by = if whole.free[k] { whole.by[k] - share * (taken + changed[k]) } else { 0.0 };
+            (unknown.range.excess(state.values[k] + unknown.scale * by) <= 0.0).then_some(by)
+        };
+        self.unknowns.iter().enumerate().map(of).collect()
     }
 
     fn stepped(&self, state: &State, step: &[f64], squares: [f64; 2]) -> Step {
@@ -347,7 +394,7 @@ impl LeastSquares {
         let values = self.unknowns.iter().zip(step).zip(&state.values);
         let values = values.map(|((of, step), from)| of.within(from + of.scale * step));
         let change = by.col(0).iter().chain(of_kept.col(0).iter()).fold(0.0, |most: f64, by| most.max(by.abs()));
-        Step { squares, values: values.collect(), change, weight, fall: state.cost(weight) - after }
+        Step { squares, values: values.collect(), change, weight, fall: state.cost(weight) - after, whole: None }
     }
 
     /// How many directions are used: those above the resolution, and at least `rank` of them that are more than rounding.
