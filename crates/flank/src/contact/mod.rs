@@ -240,21 +240,54 @@ pub(crate) fn rolled<'j, 'g>(
     session: Session,
 ) -> Result<Rolled<'j, 'g>, Failure> {
     let errors = influence::mounting(job, contact, &request.errors)?;
+    let (members, rolling) = rolling(job, contact, (request, &errors), session)?;
+    Ok(match rolling {
+        Ok(rolling) => {
+            let pair = members.pair(job, &errors, &[]);
+            let maps = pattern::on_both(&members, &pair, &rolling, request.compound);
+            let result = Summary::new(job, &members, request, &errors).of_rolling(&rolling, &maps);
+            Rolled { result, members, found: Some((rolling, maps)) }
+        }
+        Err(result) => Rolled { result: *result, members, found: None },
+    })
+}
+
+/// The numbers of a contact as it is mounted, without what the marking compound shows and which edges carry; its members and the roll.
+///
+/// # Errors
+/// As for [`rolled`].
+pub(crate) fn numbers<'j, 'g>(
+    job: &'j Job<'g>,
+    contact: &'j Contact<'g>,
+    request: &ContactRequest,
+    session: Session,
+) -> Result<(ContactResult, Members<'j, 'g>, Option<Rolling>), Failure> {
+    let errors = influence::mounting(job, contact, &request.errors)?;
+    let (members, rolling) = rolling(job, contact, (request, &errors), session)?;
+    Ok(match rolling {
+        Ok(rolling) => (Summary::new(job, &members, request, &errors).in_numbers(&rolling), members, Some(rolling)),
+        Err(result) => (*result, members, None),
+    })
+}
+
+/// A contact with these mounting errors as it rolls, or what is told of one that does not touch.
+fn rolling<'j, 'g>(
+    job: &'j Job<'g>,
+    contact: &'j Contact<'g>,
+    (request, errors): (&ContactRequest, &[f64]),
+    session: Session,
+) -> Result<(Members<'j, 'g>, Result<Rolling, Box<ContactResult>>), Failure> {
     let mut members = Members::solved(job, contact, session)?;
     members.check_range(job)?;
-    let rolling = match Rolling::of_members(job, &mut members, &errors, request.positions as usize) {
-        Ok(rolling) => rolling.closely(&members),
+    let rolling = match Rolling::of_members(job, &mut members, errors, request.positions as usize) {
+        Ok(rolling) => Ok(rolling.closely(&members)),
         Err(why) => {
-            let nothing = Summary::new(job, &members, request, &errors).of_nothing();
-            let result = ContactResult { not_done: vec![refused(&members, why)], ..nothing };
-            return Ok(Rolled { result, members, found: None });
+            let nothing = Summary::new(job, &members, request, errors).of_nothing();
+            Err(Box::new(ContactResult { not_done: vec![refused(&members, why)], ..nothing }))
         }
     };
     session.check()?;
-    let pair = members.pair(job, &errors, &[]);
-    let maps = pattern::on_both(&members, &pair, &rolling, request.compound);
-    let result = Summary::new(job, &members, request, &errors).of_rolling(&rolling, &maps);
-    Ok(Rolled { result, members, found: Some((rolling, maps)) })
+    Ok((members, rolling))
 }
 
 /// A contact for what writes no files of its own: what is known of it, and what pictures show of it if the flanks touch.

@@ -104,8 +104,22 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
     }
 
     pub(crate) fn of_rolling(&self, rolling: &Rolling, patterns: &[GapMap]) -> ContactResult {
-        let ends = rolling.flank_ends();
         let handed = rolling.transfers();
+        ContactResult {
+            edges: if rolling.has_pitch { self.edges(rolling, &handed) } else { Vec::new() },
+            pattern: patterns.iter().map(|map| map.pattern.clone()).collect(),
+            not_done: self.not_done(rolling, patterns),
+            ..self.numbers(rolling, &handed)
+        }
+    }
+
+    /// What is known of a roll without what the marking compound shows and which edges carry.
+    pub(crate) fn in_numbers(&self, rolling: &Rolling) -> ContactResult {
+        ContactResult { not_done: self.not_done(rolling, &[]), ..self.numbers(rolling, &rolling.transfers()) }
+    }
+
+    fn numbers(&self, rolling: &Rolling, handed: &[f64]) -> ContactResult {
+        let ends = rolling.flank_ends();
         let is_of_edge = rolling.middle().is_some_and(|middle| !middle.is_of_flanks());
         let kind = rolling.state().map(|state| match state {
             _ if is_of_edge => ContactKind::Edge,
@@ -116,12 +130,9 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         ContactResult {
             kind,
             middle: rolling.middle().map(|point| self.middle(rolling, point)),
-            error: self.error(rolling, &handed),
+            error: self.error(rolling, handed),
             ratio: rolling.ratio(&ends),
             ends: ends.iter().map(|(way, point)| self.end(rolling, *way, point)).collect(),
-            edges: if rolling.has_pitch { self.edges(rolling, &handed) } else { Vec::new() },
-            pattern: patterns.iter().map(|map| map.pattern.clone()).collect(),
-            not_done: self.not_done(rolling, patterns),
             remarks: self.remarks(rolling),
             timing: Timing { points: rolling.engagement.points.len(), ..Timing::default() },
             ..self.of_nothing()

@@ -191,10 +191,12 @@ pub(crate) fn points<'j, 'g>(
 /// others trim are solved, and cut when somebody asks.
 pub(crate) fn solve_side_by_side<'g>(job: &Job<'g>, surfaces: &[&GeneratedSurface<'g>], session: Session<'_>) {
     let sampled = || surfaces.iter().filter_map(|surface| Some((*surface, surface.sample.as_ref()?)));
+    let judged = sampled().map(|(surface, _)| surface).filter(|surface| surface.trimmed_by.is_empty());
+    let mut tools = secondary::tools_of(job, &judged.collect::<Vec<_>>()).into_iter();
     // expressions stay on the thread of their graph
     let asked = sampled().map(|(surface, sample)| {
         let coordinates = values(sample);
-        let tool = surface.trimmed_by.is_empty().then(|| secondary::tool_positions(job, surface, &job.bindings()));
+        let tool = if surface.trimmed_by.is_empty() { tools.next() } else { None };
         (problem(job, surface, coordinates, session), tool, (sample.targets(), sample.counts))
     });
     let found = asked.collect::<Vec<_>>().into_par_iter().map(|(problem, tool, (targets, counts))| {

@@ -87,6 +87,31 @@ pub(crate) fn tool_positions<'g>(
         .expect("a job without errors leaves nothing unbound"))
 }
 
+/// The same of several surfaces; a tool that makes some of them along the same motions is laid out once.
+pub(crate) fn tools_of<'g>(
+    job: &Job<'g>,
+    surfaces: &[&GeneratedSurface<'g>],
+) -> Vec<Result<SecondaryCutting, Positions>> {
+    let values = job.bindings();
+    let mut known: Vec<(&GeneratedSurface<'g>, SecondaryCutting)> = Vec::new();
+    let each = surfaces.iter().map(|&surface| {
+        let is_same = |other: &GeneratedSurface<'g>| {
+            let driven = [surface, other].map(|surface| surface.generation.driven.steps());
+            is_of_same_tool(other, surface) && driven[0] == driven[1]
+        };
+        let before = known.iter().find(|(other, _)| is_same(other)).filter(|_| piece(surface).is_some());
+        if let Some((_, cutting)) = before {
+            return Ok(cutting.over(ranges(surface)[2..].to_vec()));
+        }
+        let cutting = tool_positions(job, surface, &values)?;
+        // shared with those that follow
+        cutting.translate();
+        known.push((surface, cutting.clone()));
+        Ok(cutting)
+    });
+    each.collect()
+}
+
 /// Marks the points of a grid that the tools of the surfaces which trim it cut away in positions that generate nothing beside them: at the
 /// ends of their motions, say.
 pub(crate) fn judge_trims<'g>(

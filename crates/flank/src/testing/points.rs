@@ -24,10 +24,11 @@ pub(super) struct Tested<'j, 'g> {
     pub(super) session: Session<'j>,
 }
 
-/// Points, and what it took to find them: evaluations of the equations, boxes of the search for the branch.
+/// Points, those where others trim the surface, and what it took to find them: evaluations of the equations, boxes of the search for the branch.
 #[derive(Default)]
 struct Counted {
     points: Vec<SurfacePoint>,
+    trims: Vec<SurfacePoint>,
     work: [u64; 2],
 }
 
@@ -104,7 +105,11 @@ impl<'j, 'g> Tested<'j, 'g> {
             let surface = self.surface(index);
             let Some(sample) = &surface.sample else { return Counted::default() };
             let found = solve::points(self.job, surface, sample, self.options());
-            Counted { work: [found.effort.evaluations, found.effort.boxes], points: found.points }
+            Counted {
+                work: [found.effort.evaluations, found.effort.boxes],
+                trims: found.trims.into_iter().flat_map(|line| line.points).collect(),
+                points: found.points,
+            }
         })
     }
 
@@ -171,9 +176,7 @@ impl<'j, 'g> Tested<'j, 'g> {
                 return Ok(self.points(index).iter().filter(|point| is_solved(point)).cloned().collect());
             }
             PointSet::Trim => {
-                let Some(sample) = &surface.sample else { return Ok(Vec::new()) };
-                let lines = solve::points(self.job, surface, sample, self.options()).trims;
-                return Ok(lines.into_iter().flat_map(|line| line.points).filter(is_solved).collect());
+                return Ok(self.counted(index).trims.iter().filter(|point| is_solved(point)).cloned().collect());
             }
             PointSet::SingularLine => "singular line",
             PointSet::ContactLimit => "contact limit",

@@ -12,7 +12,7 @@ use crate::compare::deviation;
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::map::{Named, find};
 use crate::contact::result::ContactResult;
-use crate::contact::{backlash, interference, rolled};
+use crate::contact::{self, backlash, interference};
 use crate::convert::Conversion;
 use crate::project::failure::Failure;
 use crate::project::requests::{ContactRequest, JobSelection, Onto};
@@ -90,21 +90,20 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         let Tested { job, session, .. } = *self.tested;
         let contact = &job.contacts[index];
         let request = ContactRequest { positions: POSITIONS, ..ContactRequest::new(self.which.clone()) };
-        let rolled = match rolled(job, contact, &request, session) {
-            Ok(rolled) => rolled,
+        let (mut result, members, rolling) = match contact::numbers(job, contact, &request, session) {
+            Ok(found) => found,
             Err(Failure::Input(reason)) => return Ok(Err(reason)),
             Err(other) => return Err(other),
         };
-        let Some((rolling, _)) = &rolled.found else { return Ok(Ok(Arc::new(rolled.result))) };
+        let Some(rolling) = &rolling else { return Ok(Ok(Arc::new(result))) };
         let none = vec![0.0; contact.errors.len()];
-        let mut result = rolled.result;
         if self.is_asked(index, |number| matches!(number, ContactNumber::Backlash | ContactNumber::NormalBacklash)) {
-            let (found, unsound) = backlash::of(job, &rolled.members, &request, &none, rolling, session)?;
+            let (found, unsound) = backlash::of(job, &members, &request, &none, rolling, session)?;
             result.backlash = found.map(|(backlash, _)| backlash);
             result.not_done.extend(unsound);
         }
         if self.is_asked(index, |number| number == ContactNumber::Clearance) {
-            result.clearances = interference::of_spaces(job, &rolled.members, &none, rolling, session)?.clearances;
+            result.clearances = interference::of_spaces(job, &members, &none, rolling, session)?.clearances;
         }
         Ok(Ok(Arc::new(result)))
     }
@@ -144,8 +143,8 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
             Ok(match number {
                 SolidNumber::Volume => body.mass_properties().volume,
                 SolidNumber::Area => body.mass_properties().area,
-                SolidNumber::TipDiameter => 2.0 * body.tip_and_root()[0],
-                SolidNumber::RootDiameter => 2.0 * body.tip_and_root()[1],
+                SolidNumber::TipDiameter => 2.0 * body.tip(),
+                SolidNumber::RootDiameter => 2.0 * body.root(),
                 SolidNumber::FormDiameter if body.is_external() => {
                     2.0 * body.form().into_iter().fold(f64::MIN, f64::max)
                 }
@@ -153,7 +152,7 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
                 // of a bar at an x
                 SolidNumber::Thickness(at) => {
                     let depth = if body.arrangement().is_closed() { 0.5 * at } else { at };
-                    let found = body.thickness(depth).map(|thickness| thickness.arc);
+                    let found = body.arc_thickness(depth);
                     found.ok_or_else(|| format!("{name} has no tooth thickness at {at} mm"))?
                 }
                 SolidNumber::Span(teeth) => {

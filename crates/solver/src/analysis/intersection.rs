@@ -1,7 +1,7 @@
 //! Where two surfaces meet, along lines of the coordinates of the first.
 
 use flank_expr::geometry::Vector3;
-use flank_expr::{Expr, InstructionSet, ScalarEvaluator, Tape, TapeError};
+use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
 use crate::equations::solution::{Outcome, Range, Solution, distance};
 use crate::equations::system::{Evaluation, System};
@@ -202,9 +202,7 @@ impl Meeting {
 fn seeds(surface: &BoundSurface<'_>) -> Result<Vec<SurfacePoint>, TapeError> {
     let (unknowns, ranges) = (&surface.surface().unknowns, surface.ranges());
     let coordinates = [unknowns[0], unknowns[1]];
-    // machine code does not pay for so few
-    let problem =
-        SurfaceProblem::new(surface, coordinates)?.points_alone().with_instruction_set(InstructionSet::widest());
+    let problem = SurfaceProblem::new(surface, coordinates)?.points_alone();
     let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
     let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
     let (points, _) = problem.solve(&targets, [SEEDS; 2]);

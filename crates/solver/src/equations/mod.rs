@@ -2,6 +2,7 @@
 
 pub(crate) mod closed_form;
 pub(crate) mod lines;
+pub(crate) mod runner;
 pub(crate) mod series;
 pub(crate) mod solution;
 pub(crate) mod step;

@@ -1,12 +1,17 @@
 //! Square systems with their exact Jacobian, as one tape.
 
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use flank_expr::{Expr, InstructionSet, LaneEvaluator, LaneTape, ScalarEvaluator, Tape, TapeError};
 
 use crate::equations::lines;
+use crate::equations::runner::Runner;
 use crate::equations::solution::{CutBy, Outcome};
 use crate::equations::step::{GivenTapes, MOST_EQUATIONS, RootOutputs, written_out};
+
+/// Points at which a system is evaluated one by one before it is translated to machine code, which costs as much as some twenty of them.
+const BEFORE_TRANSLATED: u32 = 64;
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -19,8 +24,30 @@ pub struct System {
     pub(crate) lanes: LaneTapes,
     /// Residuals, then the Jacobian row by row, for many points at once: laid out when it is wanted first.
     in_lanes: OnceLock<LaneTape>,
+    singly: Count,
     extra_count: usize,
     instructions: InstructionSet,
+}
+
+/// Points at which a system was evaluated one by one.
+#[derive(Debug, Default)]
+struct Count(AtomicU32);
+
+impl Clone for Count {
+    fn clone(&self) -> Count {
+        Count(AtomicU32::new(self.0.load(Ordering::Relaxed)))
+    }
+}
+
+impl Count {
+    /// Whether so many make machine code worth its while.
+    fn is_high(&self) -> bool {
+        self.0.load(Ordering::Relaxed) >= BEFORE_TRANSLATED
+    }
+
+    fn add_one(&self) {
+        self.0.fetch_add(1, Ordering::Relaxed);
+    }
 }
 
 /// The same for many points at once; all take unknowns, then parameters.
@@ -107,8 +134,9 @@ impl System {
         let checked = LaneTape::new(&residuals);
         let lanes = LaneTapes { checked, linearized, is_written_out, expected: None, given: None };
         let instructions = InstructionSet::fastest();
-        let in_lanes = OnceLock::new();
-        Ok(System { size: unknowns.len(), tape, residuals, conditions, lanes, in_lanes, extra_count: 0, instructions })
+        let (in_lanes, singly) = (OnceLock::new(), Count::default());
+        let size = unknowns.len();
+        Ok(System { size, tape, residuals, conditions, lanes, in_lanes, singly, extra_count: 0, instructions })
     }
 
     /// The same system, whose roots are cut away by the tool ([`CutBy::ItsTool`]) where one of `conditions`, functions of
@@ -160,6 +188,7 @@ impl System {
                 .get()
                 .map(|tape| tape.with_settings(values))
                 .map_or_else(OnceLock::new, OnceLock::from),
+            singly: self.singly.clone(),
             ..*self
         }
     }
@@ -194,7 +223,16 @@ impl System {
 
     /// Something that computes residuals and Jacobian at many points at once.
     pub(crate) fn in_lanes(&self) -> LaneEvaluator<'_> {
-        LaneEvaluator::new(self.in_lanes.get_or_init(|| LaneTape::new(&self.tape)), self.instructions)
+        LaneEvaluator::new(self.lane_tape(), self.instructions)
+    }
+
+    fn lane_tape(&self) -> &LaneTape {
+        self.in_lanes.get_or_init(|| LaneTape::new(&self.tape))
+    }
+
+    /// What computes residuals and Jacobian at one point after the other, as machine code where there is any.
+    fn translated(&self) -> Runner<'_> {
+        Runner::new(&self.tape, self.lane_tape(), self.instructions)
     }
 
     /// Something that tells what roots at one set of parameters are.
@@ -212,9 +250,11 @@ impl System {
         let mut inputs = vec![0.0; self.size];
         inputs.extend_from_slice(parameters);
         let outputs = vec![0.0; self.tape.output_count()];
+        let is_often = self.singly.is_high();
         Evaluation {
             system: self,
-            evaluator: ScalarEvaluator::new(&self.tape),
+            runner: if is_often { self.translated() } else { Runner::Scalar(ScalarEvaluator::new(&self.tape)) },
+            is_counted: !is_often,
             conditions: self.conditions(parameters),
             size: self.size,
             inputs,
@@ -232,7 +272,9 @@ pub(crate) trait Linearized {
 /// Residuals and Jacobian at a point.
 pub(crate) struct Evaluation<'s> {
     system: &'s System,
-    evaluator: ScalarEvaluator<'s>,
+    runner: Runner<'s>,
+    /// Whether it is still open if the system is evaluated often.
+    is_counted: bool,
     /// At the same parameters.
     pub(crate) conditions: Conditions<'s>,
     size: usize,
@@ -270,8 +312,14 @@ impl<'s> Evaluation<'s> {
     }
 
     pub(crate) fn at(&mut self, unknowns: &[f64]) {
+        if self.is_counted {
+            self.system.singly.add_one();
+            if self.system.singly.is_high() {
+                (self.runner, self.is_counted) = (self.system.translated(), false);
+            }
+        }
         self.inputs[..self.size].copy_from_slice(unknowns);
-        self.evaluator.run(&self.inputs, &mut self.outputs);
+        self.runner.run(&self.inputs, &mut self.outputs);
     }
 
     pub(crate) fn set_parameters(&mut self, parameters: &[f64]) {
@@ -298,5 +346,33 @@ pub(crate) fn side_of(conditions: impl Iterator<Item = f64> + Clone) -> Outcome 
         Outcome::Solved
     } else {
         Outcome::Singular
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use flank_expr::Graph;
+
+    use super::*;
+
+    #[test]
+    fn a_system_has_the_same_bits_once_it_is_translated() {
+        let graph = Graph::new();
+        let [x, y, c] = ["x", "y", "c"].map(|name| graph.variable(name));
+        let residuals = [x.sin() * y + c / (x + 3.0), (x * x + y.exp()).sqrt() - c.cos()];
+        let system = System::new(&residuals, &[x, y], &[c]).expect("nothing is unbound");
+        let numbers = |often: &mut Evaluation<'_>, k: u32| {
+            often.at(&[0.1 * f64::from(k), 1.0 - 0.07 * f64::from(k)]);
+            often.outputs.iter().map(|value| value.to_bits()).collect::<Vec<u64>>()
+        };
+        let mut often = system.evaluation(&[0.8]);
+        assert!(often.is_counted);
+        for k in 0..2 * BEFORE_TRANSLATED {
+            let once = System::new(&residuals, &[x, y], &[c]).expect("nothing is unbound");
+            let mut once = once.evaluation(&[0.8]);
+            assert_eq!(numbers(&mut often, k), numbers(&mut once, k));
+            assert!(matches!(once.runner, Runner::Scalar(_)));
+        }
+        assert!(!often.is_counted && !system.evaluation(&[0.8]).is_counted);
     }
 }

@@ -100,7 +100,7 @@ impl Body {
             centre_rho,
             over_balls: 2.0 * centre_rho * across + self.gauge_side() * diameter,
             rho: [rho(low.at([x[0], x[1]])), rho(high.at([x[2], x[3]]))],
-            beyond_tip: self.gauge_side() * (centre_rho - self.tip_and_root()[0]) + 0.5 * diameter,
+            beyond_tip: self.gauge_side() * (centre_rho - self.tip()) + 0.5 * diameter,
         };
         Some((gauge, Vector3::new(x[4], x[5], z)))
     }

@@ -50,6 +50,16 @@ pub struct Chord {
 /// Places of two flanks that face each other, half-way along: the chart, the share across it, and how far on that is.
 type Facing = [(usize, f64, f64); 2];
 
+/// Where both flanks of a tooth have a depth, half-way along.
+struct Tooth {
+    /// The chart of either flank, and the share across it.
+    flanks: [(usize, f64); 2],
+    /// Of the lower one, `[z, rho]`.
+    place: [f64; 2],
+    /// How far they are apart along the circle, mm.
+    arc: f64,
+}
+
 /// The shortest way between flank lines.
 pub(crate) struct Shortest {
     ends: [Vector3<f64>; 2],
@@ -80,7 +90,7 @@ impl Body {
     pub fn edge_below_tip(&self) -> Option<f64> {
         let tip = self.blank().tip(0.5);
         let depth = |place: [f64; 2]| self.depth([place[0], place[1], 0.0]);
-        self.has_edge().then(|| (self.tip_and_root()[0] - depth(tip)).abs())
+        self.has_edge().then(|| (self.tip() - depth(tip)).abs())
     }
 
     /// By what the depth of teeth is measured, of a place `[z, rho, …]`.
@@ -97,17 +107,34 @@ impl Body {
     /// The distance from the axis (of a face gear the z, of a rack the x) of the tip and of the deepest point of the space, half-way along, mm;
     /// the extremes of all spaces where these differ.
     pub fn tip_and_root(&self) -> [f64; 2] {
-        let extremes: [fn(f64, f64) -> f64; 2] = [f64::min, f64::max];
-        let [deeper, higher] = if self.is_external() { extremes } else { [extremes[1], extremes[0]] };
-        let ends = self.spaces.iter().map(|charts| {
-            let of =
-                |extreme: fn(f64, f64) -> f64| charts.iter().map(|chart| self.extreme(chart, extreme)).reduce(extreme);
+        [self.tip(), self.root()]
+    }
+
+    /// Of these the tip.
+    pub fn tip(&self) -> f64 {
+        let [_, higher] = self.deeper_and_higher();
+        let of_space = |charts: &Vec<Chart>| {
             // an edge may lie a little beside the top
-            let top = if self.has_edge() { of(higher) } else { None };
-            let first = self.depth(self.arrangement.place(charts[0].at([0.0, 0.5])));
-            [top.unwrap_or(first), of(deeper).unwrap_or_default()]
-        });
-        ends.reduce(|a, b| [higher(a[0], b[0]), deeper(a[1], b[1])]).unwrap_or_default()
+            let top = if self.has_edge() { self.extreme_of(charts, higher) } else { None };
+            top.unwrap_or_else(|| self.depth(self.arrangement.place(charts[0].at([0.0, 0.5]))))
+        };
+        self.spaces.iter().map(of_space).reduce(higher).unwrap_or_default()
+    }
+
+    /// Of these the deepest point.
+    pub fn root(&self) -> f64 {
+        let [deeper, _] = self.deeper_and_higher();
+        let of_space = |charts: &Vec<Chart>| self.extreme_of(charts, deeper).unwrap_or_default();
+        self.spaces.iter().map(of_space).reduce(deeper).unwrap_or_default()
+    }
+
+    /// Which of two depths is deeper in a space, and which is higher.
+    fn deeper_and_higher(&self) -> [fn(f64, f64) -> f64; 2] {
+        if self.is_external() { [f64::min, f64::max] } else { [f64::max, f64::min] }
+    }
+
+    fn extreme_of(&self, charts: &[Chart], extreme: fn(f64, f64) -> f64) -> Option<f64> {
+        charts.iter().map(|chart| self.extreme(chart, extreme)).reduce(extreme)
     }
 
     /// The least or the largest depth of a chart, half-way along.
@@ -137,6 +164,22 @@ impl Body {
 
     /// The tooth's thickness at a distance from the axis (of a face gear at a z), half-way along; `None` where a flank does not reach there.
     pub fn thickness(&self, depth: f64) -> Option<Thickness> {
+        let Tooth { flanks: [low, high], place: [z, rho], arc } = self.tooth_at(depth)?;
+        let chord = self.shortest([(high.0, high.1, 0.0), (low.0, low.1, self.pitch())], arc).map(|way| {
+            let [p, q] = way.ends;
+            let middle = self.depth(self.arrangement.place((0.5 * (p + q)).into()));
+            let tip = self.tip();
+            Chord { length: (q - p).norm(), height: if self.is_external() { tip - middle } else { middle - tip } }
+        });
+        Some(Thickness { rho, z, arc, chord })
+    }
+
+    /// Of this what it is along the circle.
+    pub fn arc_thickness(&self, depth: f64) -> Option<f64> {
+        self.tooth_at(depth).map(|tooth| tooth.arc)
+    }
+
+    fn tooth_at(&self, depth: f64) -> Option<Tooth> {
         let share = |k: usize| Some((k, self.on_flank(k, depth)?));
         // flank, or chamfer beside it
         let count = self.charts().len();
@@ -147,13 +190,7 @@ impl Body {
         let way = self.pitch() - (self.arrangement.near(to, from + 0.5 * self.pitch()) - from);
         // flanks that meet in an edge are none apart, but for what charts are off
         let arc = Some(self.arrangement.arc(rho) * way).filter(|arc| arc.abs() > ENDS).unwrap_or_default();
-        let chord = self.shortest([(high.0, high.1, 0.0), (low.0, low.1, self.pitch())], arc).map(|way| {
-            let [p, q] = way.ends;
-            let middle = self.depth(self.arrangement.place((0.5 * (p + q)).into()));
-            let tip = self.tip_and_root()[0];
-            Chord { length: (q - p).norm(), height: if self.is_external() { tip - middle } else { middle - tip } }
-        });
-        Some(Thickness { rho, z, arc, chord })
+        Some(Tooth { flanks: [low, high], place: [z, rho], arc })
     }
 
     /// The diameter of a ball that touches both flanks about where these have a distance from the axis, mm: its radii there are square to the

@@ -5,6 +5,7 @@
 //! blank's less that of its spaces.
 
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 use nalgebra::Vector3;
 
@@ -16,6 +17,8 @@ use crate::solid::chart::Chart;
 
 /// Nodes of the quadrature along each direction of a chart, and along a segment of the outline.
 const NODES: usize = 32;
+/// From 0 to 1; they are asked for once for each strip of a blank's end.
+static NODES_AND_WEIGHTS: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| gauss_legendre(NODES));
 
 /// What a body is as a mass of density one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,7 +69,7 @@ impl Body {
 
     /// The moments of one space within the blank, and the area of its charts.
     fn of_space(&self, space: usize) -> (Moments, f64) {
-        let nodes = gauss_legendre(NODES);
+        let nodes = &NODES_AND_WEIGHTS[..];
         let shares: Vec<f64> = nodes.iter().map(|(share, _)| *share).collect();
         let [lines, next] = self.tooth_lines(space, &vec![shares.clone(); self.charts().len()], &shares);
         let (mut sums, mut area) = ([0.0; 10], 0.0);
@@ -95,7 +98,7 @@ impl Body {
                 .zip([lines[j][0][2], next[j][0][2]])
                 .map(|((wall, sense), near)| (wall, near, sense))
             {
-                for (across, by_across) in &nodes {
+                for (across, by_across) in nodes {
                     let [at, by_u, by_w] = wall.frame([*across, *along]);
                     let normal = by_along * by_across * Vector3::from(by_u).cross(&Vector3::from(by_w));
                     add(at, *sense * normal, self.arrangement.near(self.arrangement.place(at)[2], near));
@@ -109,7 +112,7 @@ impl Body {
 
     /// The moments of what of a bar's first space lies before the plane through its middle.
     fn of_first_half(&self) -> Moments {
-        let nodes = gauss_legendre(NODES);
+        let nodes = &NODES_AND_WEIGHTS[..];
         let [a, b] = self.side();
         let count = self.charts().len();
         let whole = self.charts()[..count / 2].iter().map(|chart| (chart, 1.0));
@@ -202,7 +205,7 @@ impl Body {
 
     /// What a space leaves out of the blank's own surface.
     fn open_area(&self, space: usize) -> f64 {
-        let nodes = gauss_legendre(NODES);
+        let nodes = &NODES_AND_WEIGHTS[..];
         let ends = vec![vec![0.0, 0.5, 1.0]; self.charts().len()];
         let [begin, tip, end] = self.blank().bounds();
         // with edges, no land is left, and the ways from one to the next add up to all of it
@@ -245,7 +248,7 @@ impl Body {
             along(segment).map(|([_, rho], [by_z, _], weight)| -weight * by_z * rho).sum()
         };
         let [begin, tip, end] = self.blank().bounds();
-        let nodes = gauss_legendre(NODES);
+        let nodes = &NODES_AND_WEIGHTS[..];
         let shares: Vec<f64> = [0.0].into_iter().chain(nodes.iter().map(|(share, _)| *share)).chain([1.0]).collect();
         let lines = self.lines(&vec![vec![0.0, 0.5, 1.0]; self.charts().len()], &shares);
         let root: Vec<[f64; 2]> = lines.iter().map(|line| line[line.len() / 2]).map(|[z, rho, _]| [z, rho]).collect();
@@ -322,7 +325,7 @@ fn moved([one, x, y, z, xx, yy, zz, xy, xz, yz]: &Moments, arrangement: Arrangem
 
 /// Places along a segment for an integral: `[z, rho]`, their derivatives by the share, and weights.
 fn along(segment: &OutlineSegment) -> impl Iterator<Item = ([f64; 2], [f64; 2], f64)> {
-    gauss_legendre(NODES).into_iter().map(|(share, weight)| {
+    NODES_AND_WEIGHTS.iter().map(|&(share, weight)| {
         let place = segment.at(share);
         let chord = [0, 1].map(|k| segment.to[k] - segment.from[k]);
         let by_share = match segment.center {

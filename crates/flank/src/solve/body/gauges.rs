@@ -110,7 +110,7 @@ pub(crate) fn no_ball(name: &str, (body, surfaces): (&Body, &[String]), ball: f6
 
 /// So many circles from the form diameter to the tip.
 fn circles(body: &Body, count: usize) -> Vec<f64> {
-    let ([tip, _], form) = (body.tip_and_root(), body.form());
+    let (tip, form) = (body.tip(), body.form());
     let deepest = if body.is_external() { form[0].max(form[1]) } else { form[0].min(form[1]) };
     (0..count).map(|k| deepest + (tip - deepest) * k as f64 / (count - 1) as f64).collect()
 }

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::analysis::secondary::SecondaryCutting;
 use crate::analysis::secondary::net::{Foot, Found, Near, Piece, Seen, Side};
-use crate::analysis::secondary::tape::Runner;
+use crate::equations::runner::Runner;
 
 /// A point less deep in the steel than this, mm, is only touched: points are good to this.
 const TOUCH: f64 = 1e-9;

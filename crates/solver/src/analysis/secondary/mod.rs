@@ -66,6 +66,16 @@ impl SecondaryCutting {
         }
     }
 
+    /// The same along the same motions with other `ranges`.
+    ///
+    /// # Panics
+    /// If there are not as many ranges as motions.
+    #[must_use]
+    pub fn over(&self, ranges: Vec<Range>) -> SecondaryCutting {
+        assert_eq!(self.ranges.len(), ranges.len(), "one range for each motion");
+        SecondaryCutting { ranges, ..self.clone() }
+    }
+
     /// Makes the machine code that those with other settings share.
     pub fn translate(&self) {
         self.pieces.iter().for_each(Piece::translate);

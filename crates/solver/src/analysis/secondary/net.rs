@@ -5,7 +5,8 @@ use std::sync::Arc;
 use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
-use crate::analysis::secondary::tape::{PlaceTape, Runner};
+use crate::analysis::secondary::tape::PlaceTape;
+use crate::equations::runner::Runner;
 use crate::equations::solution::{ROUNDING, Range};
 use crate::surface::bound::BoundSurface;
 
