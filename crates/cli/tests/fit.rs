@@ -232,6 +232,84 @@ fn a_point_that_does_not_go_with_the_others_is_named() {
     assert!(stderr.contains("not measured: 1 of 45 points of concave"), "{stderr}");
 }
 
+/// Measured with 0.4 um of noise, and points that are off by what `off` says, if that is not zero; and the same without these.
+fn with_points_off(file: &Path, name: &str, off: impl Fn([usize; 2]) -> f64) -> [String; 2] {
+    let noise = |[row, column]: [usize; 2]| {
+        8e-4 * (((12.9898 * row as f64 + 78.233 * column as f64).sin() * 43_758.545_3).fract().abs() - 0.5)
+    };
+    let moved = |place, at: [f64; 3], normal: [f64; 3]| {
+        plain(place, std::array::from_fn(|k| at[k] + (noise(place) + 1e-3 * off(place)) * normal[k]))
+    };
+    let all = rewritten(file, &format!("{name}.csv"), moved);
+    let rest = rewritten(file, &format!("{name}_rest.csv"), |place, at, normal| {
+        (off(place) == 0.0).then(|| moved(place, at, normal)).flatten()
+    });
+    [all, rest]
+}
+
+/// A row, a column, or several points that are off are told as such and no others, with what the fit without them predicts of them; and that they are
+/// why so much is left.
+#[test]
+fn rows_columns_and_several_points_that_are_off_are_named() {
+    let file = gauged("fit_outliers");
+    let several = [[1, 9], [2, 4], [3, 3], [4, 8], [5, 1], [5, 5]];
+    let ways: [(&str, &dyn Fn([usize; 2]) -> f64, &str); 5] = [
+        ("row", &|[row, _]| if row == 2 { 50.0 } else { 0.0 }, "row 2, 9 points, of concave lies "),
+        ("end", &|[row, _]| if row == 5 { -20.0 } else { 0.0 }, "row 5, 9 points, of concave lies -"),
+        ("column", &|[_, column]| if column == 9 { 30.0 } else { 0.0 }, "column 9, 5 points, of concave lies "),
+        ("several", &|at| if several.contains(&at) { 40.0 } else { 0.0 }, "row 4, column 8 of concave lies "),
+        ("one_of_row", &|at| if at[0] == 2 || at == [4, 6] { 25.0 } else { 0.0 }, "row 4, column 6 of concave lies "),
+    ];
+    for (name, off, says) in ways {
+        let [all, rest] = with_points_off(&file, name, off);
+        let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &all, "--vary", VARIED]);
+        let outliers = told["outliers"].as_array().expect("points");
+        let place = |of: &Value| ["row", "column"].map(|name| of[name].as_u64().expect("an index") as usize);
+        let found: Vec<[usize; 2]> = outliers.iter().map(place).collect();
+        let wanted: Vec<[usize; 2]> = (0..45).map(|at| [at / 9 + 1, at % 9 + 1]).filter(|at| off(*at) != 0.0).collect();
+        assert_eq!(found, wanted, "{name}");
+        assert!(stderr.contains(says), "{name}: {stderr}");
+        // its own scatter and that of what is predicted
+        let far = outliers.iter().map(|of| (number(&of["off_um"]) - off(place(of))).abs()).fold(0.0, f64::max);
+        assert!(far < 2.0, "{name}: {far}");
+        assert!(outliers.iter().all(|of| number(&of["sigmas"]) > 20.0), "{name}: {outliers:?}");
+        assert!(
+            stderr.contains("outliers: of the points that go together the settings would leave 0."),
+            "{name}: {stderr}"
+        );
+        assert!(!stderr.contains("rank:") && !stderr.contains("may mean nothing"), "{name}: {stderr}");
+        let (refitted, _) =
+            fit(3, &[PINION, "concave", "--measured", &rest, "--rows", "5", "--columns", "9", "--vary", VARIED]);
+        let (without, left) = (number(&told["without_outliers_um"]), number(&refitted["identification"]["left_um"]));
+        assert!((without - left).abs() < 1e-6, "{name}: {without} and {left}");
+        assert!(
+            refitted["outliers"].as_array().expect("points").is_empty() && refitted["without_outliers_um"].is_null()
+        );
+        if name == "several" {
+            let (told, _) = fit(3, &[PINION, "concave", "--measured", &all, "--vary", VARIED, "--order", "2"]);
+            let found: Vec<[usize; 2]> = told["outliers"].as_array().expect("points").iter().map(place).collect();
+            assert_eq!(found, wanted, "an order alone");
+        }
+    }
+}
+
+/// One setting of three that were changed leaves a smooth deviation of many micrometres: no point of it is off, and one that is, is off from it.
+#[test]
+fn a_smooth_deviation_has_no_points_that_are_off() {
+    let file = gauged("fit_smooth");
+    let [plain, _] = with_points_off(&file, "smooth", |_| 0.0);
+    let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &plain, "--vary", "ratio_of_roll"]);
+    assert!(number(&told["identification"]["left_um"]) > 2.0, "{told}");
+    assert!(told["outliers"].as_array().expect("points").is_empty(), "{stderr}");
+    let [one, _] = with_points_off(&file, "smooth_one", |at| if at == [3, 8] { 8.0 } else { 0.0 });
+    let (told, stderr) = fit(3, &[PINION, "concave", "--measured", &one, "--vary", "ratio_of_roll"]);
+    let outliers = told["outliers"].as_array().expect("points");
+    assert_eq!((outliers.len(), &outliers[0]["row"], &outliers[0]["column"]), (1, &Value::from(3), &Value::from(8)));
+    assert!((number(&outliers[0]["off_um"]) - 8.0).abs() < 1.5, "{outliers:?}");
+    assert!(stderr.contains("of a deviation that is smooth beside what the settings do"), "{stderr}");
+    assert!(stderr.contains("rank:"), "{stderr}");
+}
+
 /// Turned by a tooth, it is the same flank, if it may be turned; another flank, too few points, a reversed grid are told.
 #[test]
 fn grids_that_are_not_those_of_the_flank_are_told() {

@@ -72,6 +72,7 @@ pub use milling::pose::{Bending, CutterPose, Lean, NoPose};
 pub use milling::series::{Moving, PoseField, PoseSeries};
 pub use milling::side::{LeftOnWay, SideMotion, SidePass, SideStrip, left_on_way, side_directions};
 pub use milling::sweep::{LeftOver, SweptCutter};
+pub use newton::least_squares::outliers::LinearModel;
 pub use newton::least_squares::{
     LeastSquares, LeastSquaresFit, Linearized, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
 };

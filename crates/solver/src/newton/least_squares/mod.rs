@@ -1,6 +1,7 @@
 //! Nonlinear least squares with bounds: Levenberg and Marquardt, each step from the singular values of the Jacobian.
 
 mod decomposed;
+pub(crate) mod outliers;
 mod thin;
 
 use std::rc::Rc;
