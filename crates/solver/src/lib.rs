@@ -25,7 +25,9 @@ mod roots;
 mod solid;
 mod surface;
 
-pub use analysis::adjustment::choice::{linear_rest, most_effective, most_independent, opposed, separated};
+pub use analysis::adjustment::choice::{
+    least_dispensable, linear_rest, most_effective, most_independent, opposed, separated,
+};
 pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
 pub use analysis::adjustment::shapes::Shapes;
 pub use analysis::adjustment::{AdjustableSurface, Foot, FootSearch, NearFoot};

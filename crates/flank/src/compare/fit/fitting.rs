@@ -2,8 +2,8 @@
 
 use flank_chain_dsl::Parameter;
 use flank_solver::{
-    AdjustedSurfaces, Alignment, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection, linear_rest,
-    most_effective,
+    AdjustedSurfaces, Alignment, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
+    least_dispensable, linear_rest, most_effective,
 };
 
 use super::aim::Aim;
@@ -53,8 +53,21 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let of_points = || scatter(all_leave, off.len(), own.len());
             let noise = request.noise.unwrap_or_else(|| if request.is_wish() { 0.0 } else { of_points() });
             own.truncate(candidates.len());
-            let mut free: Vec<usize> =
-                most_effective(off, &own, &motions, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
+            let mut taken = most_effective(off, &own, &motions, LEAST, noise);
+            let rest = |of: &[usize]| {
+                let effects: Vec<Vec<f64>> =
+                    of.iter().map(|k| own[*k].clone()).chain(motions.iter().cloned()).collect();
+                linear_rest(off, &effects, request.resolution)
+            };
+            // several may do together what none of them does by itself
+            let one_by_one = rest(&taken);
+            if one_by_one - all_leave >= LEAST {
+                let others = least_dispensable(off, (&own, &motions), request.resolution, (LEAST, noise));
+                if one_by_one - rest(&others) >= LEAST {
+                    taken = others;
+                }
+            }
+            let mut free: Vec<usize> = taken.into_iter().map(|k| candidates[k]).collect();
             free.sort_unstable();
             let choice = SettingsChoice {
                 candidates: candidates.iter().map(|k| self.problem.settings[*k].name.clone()).collect(),
@@ -224,7 +237,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let Range { low, high } = self.problem.unknowns[k].range;
             let at_end = held.filter(|_| of.fit.values[k] <= low || of.fit.values[k] >= high);
             let is_told = of.fit.directions.iter().filter(|of| !of.is_used).all(|of| of.shares[k].abs() <= SHARE);
-            let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).sqrt());
+            let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).abs().sqrt());
             AdjustedSetting {
                 name: setting.name.clone(),
                 is_error: setting.is_error,

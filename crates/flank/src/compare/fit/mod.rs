@@ -4,6 +4,7 @@ mod aim;
 pub(super) mod corrected;
 mod fitting;
 mod keep;
+mod mounting;
 mod outliers;
 mod problem;
 pub(crate) mod result;

@@ -73,6 +73,10 @@ pub(super) fn judged(
         result.remarks.push(remark);
     }
     result.remarks.extend(fitting.reversed(request, main));
+    result.remarks.extend(fitting.aims.iter().filter_map(|aim| {
+        let message = format!("{}; settings make up for some of that", aim.mounted()?);
+        Some(Remark::new(RemarkKind::OtherMounting, &aim.of.surface.name, message))
+    }));
     result
 }
 
@@ -147,17 +151,22 @@ fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)
     }
     let is_enough = result.without_outliers_um.is_some_and(|without| without <= result.within_um);
     let unused = main.fit.directions.iter().filter(|of| !of.is_used).count();
+    // what shows nothing shows nothing at a finer resolution
+    let weak = main.fit.directions.iter().filter(|of| !of.is_used && of.size >= NOTHING).count();
     let all = main.fit.directions.len();
     if bound.is_empty() && !is_enough {
         let more = if request.vary.is_empty() { "" } else { "; more settings with option `vary` may" };
-        let finer = match unused {
+        let finer = match weak {
             0 => String::new(),
             _ => format!("; option `resolution` below {} um takes in more of them", request.resolution * 1e3),
         };
-        reasons.push(format!(
-            "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{more}{finer}",
-            all - unused
-        ));
+        reasons.push(match all {
+            0 => format!("rank: what is held leaves the settings no direction in which to move the flank{more}"),
+            _ => format!(
+                "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{more}{finer}",
+                all - unused
+            ),
+        });
     }
     reasons
 }

@@ -1,0 +1,83 @@
+//! Whether measured points lie beside their places as those of a gear do that is mounted or scaled otherwise.
+
+use flank_solver::{Outcome, SurfacePoint};
+
+use crate::compare::gauged::Gauged;
+
+/// Points that lie beside their places by less than this, mm, root of the mean square, were probed so.
+const BESIDE: f64 = 0.01;
+/// What leaves less than this share of it explains it.
+const EXPLAINED: f64 = 0.3;
+
+/// What moves all points of a gear.
+struct Cause {
+    /// Of the radius and the height of a point, per unit: what it moves them by.
+    moves: fn([f64; 2]) -> [f64; 2],
+    words: fn(f64) -> String,
+}
+
+const CAUSES: [Cause; 3] = [
+    Cause {
+        moves: |_| [0.0, 1.0],
+        words: |by| {
+            format!("shifted by {by:.4} mm along z: has z = 0 of the measurement the place that it has in the spec?")
+        },
+    },
+    Cause {
+        moves: |_| [1.0, 0.0],
+        words: |by| {
+            format!("shifted by {by:.4} mm away from the axis: is the axis of the measurement that of the gear?")
+        },
+    },
+    Cause {
+        moves: |at| at,
+        words: |by| format!("{:.6} times as large: are x, y and z in mm, and as they were measured?", 1.0 + by),
+    },
+];
+
+impl Gauged {
+    /// Points lie where the surface was found along normals, or at the radii and heights of their places. Where they do neither, and one
+    /// cause moves all of them: what they look as if, in words. Settings would make up for it.
+    pub(super) fn mounted(&self) -> Option<String> {
+        let pairs = self.positions.iter().zip(&self.nominal);
+        let off: Vec<([f64; 2], [f64; 2], f64)> = pairs.filter_map(|(at, of)| along_meridian((*at)?, of)).collect();
+        let rms = |of: &dyn Fn(&([f64; 2], [f64; 2], f64)) -> f64| {
+            (off.iter().map(|one| of(one).powi(2)).sum::<f64>() / off.len().max(1) as f64).sqrt()
+        };
+        let beside = rms(&|(.., off)| *off);
+        if beside < BESIDE {
+            return None;
+        }
+        let fitted = CAUSES.iter().map(|cause| {
+            let effect = |(at, along, _): &([f64; 2], [f64; 2], f64)| dot((cause.moves)(*at), *along);
+            let squares: f64 = off.iter().map(|of| effect(of).powi(2)).sum();
+            let by = off.iter().map(|of| effect(of) * of.2).sum::<f64>() / squares;
+            (rms(&|of| of.2 - by * effect(of)), by, cause)
+        });
+        let (left, by, cause) = fitted.filter(|of| of.0.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (left < EXPLAINED * beside).then(|| {
+            format!(
+                "the points lie {beside:.4} mm beside their places, along the flank, as if all were {}",
+                (cause.words)(by)
+            )
+        })
+    }
+}
+
+/// Radius and height of the nominal point, the direction along the flank in the plane of both, and how far a point lies off along it, mm. A turn
+/// about z, and what lies along the normal, do not change that.
+fn along_meridian(at: [f64; 3], of: &SurfacePoint) -> Option<([f64; 2], [f64; 2], f64)> {
+    let SurfacePoint { outcome: Outcome::Solved, position: [x, y, z], normal: [nx, ny, nz], .. } = *of else {
+        return None;
+    };
+    let radius = x.hypot(y);
+    let outwards = (x * nx + y * ny) / radius;
+    let length = outwards.hypot(nz);
+    let along = [-nz / length, outwards / length];
+    let off = dot([at[0].hypot(at[1]) - radius, at[2] - z], along);
+    off.is_finite().then_some(([radius, z], along, off))
+}
+
+fn dot([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
+    a * c + b * d
+}
