@@ -310,6 +310,60 @@ fn a_smooth_deviation_has_no_points_that_are_off() {
     assert!(stderr.contains("rank:"), "{stderr}");
 }
 
+/// A gear that stands elsewhere on the machine, or whose coordinates are scaled, is told where the points show it; other settings are not taken for that.
+#[test]
+fn a_gear_that_is_mounted_or_scaled_otherwise_is_told() {
+    const GEAR: &str = "specs/hobbing/helical_gear.chain";
+    let file = gauged("fit_mounted");
+    let (sin, cos) = 4.35f64.to_radians().sin_cos();
+    let plain_grid = rewritten(&file, "plain.csv", |place, at, _| plain(place, at));
+    let scaled = rewritten(&file, "scaled.csv", |place, at, _| plain(place, at.map(|x| 1.001 * x)));
+    let outwards =
+        rewritten(&file, "outwards.csv", |place, [x, y, z], _| plain(place, [x + 0.05 * cos, y + 0.05 * sin, z]));
+    for (grid, says) in [(&plain_grid, None), (&scaled, Some("1.001")), (&outwards, Some("shifted by 0.0"))] {
+        let run = flank(&["fit", PINION, "concave", "--measured", grid, "--vary", VARIED, "--within", "10um"]);
+        let stderr = text(&run.stderr);
+        assert_eq!(run.status.code(), Some(0), "{stderr}");
+        match says {
+            Some(says) => assert!(
+                stderr.contains("mm beside their places, along the flank, as if all were ") && stderr.contains(says),
+                "{stderr}"
+            ),
+            None => assert!(!stderr.contains("beside their places"), "{stderr}"),
+        }
+    }
+    let out = folder("fit_mounted_helical");
+    let measured = flank(&["measure", GEAR, "--surface", "lower_flank", "--out", path(&out)]);
+    assert_eq!(measured.status.code(), Some(0));
+    let content = std::fs::read_to_string(out.join("helical_gear.grid.csv")).expect("written");
+    let lines = content.lines().filter(|line| line.starts_with("lower_flank,grid") || line.contains(",grid,"));
+    let shifted = lines.map(|line| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let z = cells[7].parse::<f64>().expect("a number") + 0.05;
+        format!("{},{},{},{},{z:?}\n", cells[3], cells[4], cells[5], cells[6])
+    });
+    let shifted = written(&out, "shifted.csv", &format!("row,column,x,y,z\n{}", shifted.collect::<String>()));
+    let run = flank(&["fit", GEAR, "lower_flank", "--measured", &shifted, "--vary", "helix_angle"]);
+    assert!(text(&run.stderr).contains("as if all were shifted by 0.0500 mm along z"), "{}", text(&run.stderr));
+}
+
+/// No setting of the face hobbed pinion takes a tenth of a micrometre of this ease-off away, and four of them together take all but that. What shows
+/// nothing is not promised to show at a finer resolution.
+#[test]
+fn settings_are_chosen_that_do_something_together() {
+    let asked = ["specs/bevel/face_hobbed_pinion.chain", "concave", "--from", "concave"];
+    let (told, stderr) = fit(0, &[&asked[..], &["--ease-off", "crowning: 0, 10; bias: 5"]].concat());
+    assert!(number(&told["before_um"]) > 3.0 && number(&told["predicted_um"]) < 0.1, "{stderr}");
+    assert!(!stderr.contains("no setting takes as much"), "{stderr}");
+    assert!(
+        names(&told["correction"]["settings"]).len() < told["choice"]["candidates"].as_array().expect("names").len()
+    );
+    let spur = ["specs/hobbing/spur_gear.chain", "flank_plus", "--from", "flank_plus", "--vary", "r.module"];
+    let (told, stderr) = fit(3, &[&spur[..], &["--ease-off", "crowning: 5 lengthwise"]].concat());
+    assert!(told["untold"].as_array().expect("words").len() == 1, "{told}");
+    assert!(stderr.contains("rank: the 1 of 2 directions") && !stderr.contains("takes in more of them"), "{stderr}");
+}
+
 /// Turned by a tooth, it is the same flank, if it may be turned; another flank, too few points, a reversed grid are told.
 #[test]
 fn grids_that_are_not_those_of_the_flank_are_told() {

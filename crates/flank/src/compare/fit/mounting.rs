@@ -13,25 +13,37 @@ const EXPLAINED: f64 = 0.3;
 struct Cause {
     /// Of the radius and the height of a point, per unit: what it moves them by.
     moves: fn([f64; 2]) -> [f64; 2],
-    words: fn(f64) -> String,
+    /// What all points look as if they were, and what is to be asked.
+    words: fn(f64) -> [String; 2],
 }
 
 const CAUSES: [Cause; 3] = [
     Cause {
         moves: |_| [0.0, 1.0],
         words: |by| {
-            format!("shifted by {by:.4} mm along z: has z = 0 of the measurement the place that it has in the spec?")
+            [
+                format!("shifted by {by:.4} mm along z"),
+                "does z = 0 of the measurement lie where it does in the spec?".to_string(),
+            ]
         },
     },
     Cause {
         moves: |_| [1.0, 0.0],
         words: |by| {
-            format!("shifted by {by:.4} mm away from the axis: is the axis of the measurement that of the gear?")
+            [
+                format!("shifted by {by:.4} mm away from the axis"),
+                "is the axis of the measurement that of the gear?".to_string(),
+            ]
         },
     },
     Cause {
         moves: |at| at,
-        words: |by| format!("{:.6} times as large: are x, y and z in mm, and as they were measured?", 1.0 + by),
+        words: |by| {
+            [
+                format!("{:.6} times as far from the origin", 1.0 + by),
+                "are x, y and z in mm, and as they were measured?".to_string(),
+            ]
+        },
     },
 ];
 
@@ -55,10 +67,11 @@ impl Gauged {
             (rms(&|of| of.2 - by * effect(of)), by, cause)
         });
         let (left, by, cause) = fitted.filter(|of| of.0.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        let [as_if, question] = (cause.words)(by);
         (left < EXPLAINED * beside).then(|| {
             format!(
-                "the points lie {beside:.4} mm beside their places, along the flank, as if all were {}",
-                (cause.words)(by)
+                "the points lie {beside:.4} mm beside their places, along the flank, as if all were {as_if}; settings make up for some of that: \
+                 {question}"
             )
         })
     }

@@ -73,10 +73,12 @@ pub(super) fn judged(
         result.remarks.push(remark);
     }
     result.remarks.extend(fitting.reversed(request, main));
-    result.remarks.extend(fitting.aims.iter().filter_map(|aim| {
-        let message = format!("{}; settings make up for some of that", aim.mounted()?);
-        Some(Remark::new(RemarkKind::OtherMounting, &aim.of.surface.name, message))
-    }));
+    result.remarks.extend(
+        fitting
+            .aims
+            .iter()
+            .filter_map(|aim| Some(Remark::new(RemarkKind::OtherMounting, &aim.of.surface.name, aim.mounted()?))),
+    );
     result
 }
 
