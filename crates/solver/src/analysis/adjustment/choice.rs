@@ -88,7 +88,7 @@ pub fn least_dispensable(
     let mut now = rest(&taken);
     while !taken.is_empty() {
         let without = |k: &usize| taken.iter().copied().filter(|of| of != k).collect::<Vec<usize>>();
-        let each = taken.iter().map(|k| without(k)).map(|others| (rest(&others), others));
+        let each = taken.iter().map(without).map(|others| (rest(&others), others));
         let Some((left, others)) = each.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
         let is_shown = count * (left * left - now * now) >= (SHOWN * noise).powi(2);
         if left - now >= least && is_shown {
