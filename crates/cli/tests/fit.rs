@@ -232,6 +232,9 @@ fn a_point_that_does_not_go_with_the_others_is_named() {
     assert!(stderr.contains("not measured: 1 of 45 points of concave"), "{stderr}");
 }
 
+/// By which a point is off, um.
+type Off<'a> = &'a dyn Fn([usize; 2]) -> f64;
+
 /// Measured with 0.4 um of noise, and points that are off by what `off` says, if that is not zero; and the same without these.
 fn with_points_off(file: &Path, name: &str, off: impl Fn([usize; 2]) -> f64) -> [String; 2] {
     let noise = |[row, column]: [usize; 2]| {
@@ -253,7 +256,7 @@ fn with_points_off(file: &Path, name: &str, off: impl Fn([usize; 2]) -> f64) -> 
 fn rows_columns_and_several_points_that_are_off_are_named() {
     let file = gauged("fit_outliers");
     let several = [[1, 9], [2, 4], [3, 3], [4, 8], [5, 1], [5, 5]];
-    let ways: [(&str, &dyn Fn([usize; 2]) -> f64, &str); 5] = [
+    let ways: [(&str, Off<'_>, &str); 5] = [
         ("row", &|[row, _]| if row == 2 { 50.0 } else { 0.0 }, "row 2, 9 points, of concave lies "),
         ("end", &|[row, _]| if row == 5 { -20.0 } else { 0.0 }, "row 5, 9 points, of concave lies -"),
         ("column", &|[_, column]| if column == 9 { 30.0 } else { 0.0 }, "column 9, 5 points, of concave lies "),

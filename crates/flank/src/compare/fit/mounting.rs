@@ -47,24 +47,34 @@ const CAUSES: [Cause; 3] = [
     },
 ];
 
+/// A point beside its place.
+struct Beside {
+    /// Radius and height of its place.
+    place: [f64; 2],
+    /// The direction along the flank in the plane of both.
+    along: [f64; 2],
+    /// How far it lies off along that, mm.
+    off: f64,
+}
+
 impl Gauged {
     /// Points lie where the surface was found along normals, or at the radii and heights of their places. Where they do neither, and one
     /// cause moves all of them: what they look as if, in words. Settings would make up for it.
     pub(super) fn mounted(&self) -> Option<String> {
         let pairs = self.positions.iter().zip(&self.nominal);
-        let off: Vec<([f64; 2], [f64; 2], f64)> = pairs.filter_map(|(at, of)| along_meridian((*at)?, of)).collect();
-        let rms = |of: &dyn Fn(&([f64; 2], [f64; 2], f64)) -> f64| {
-            (off.iter().map(|one| of(one).powi(2)).sum::<f64>() / off.len().max(1) as f64).sqrt()
+        let all: Vec<Beside> = pairs.filter_map(|(at, of)| Beside::of((*at)?, of)).collect();
+        let rms = |of: &dyn Fn(&Beside) -> f64| {
+            (all.iter().map(|one| of(one).powi(2)).sum::<f64>() / all.len().max(1) as f64).sqrt()
         };
-        let beside = rms(&|(.., off)| *off);
+        let beside = rms(&|of| of.off);
         if beside < BESIDE {
             return None;
         }
         let fitted = CAUSES.iter().map(|cause| {
-            let effect = |(at, along, _): &([f64; 2], [f64; 2], f64)| dot((cause.moves)(*at), *along);
-            let squares: f64 = off.iter().map(|of| effect(of).powi(2)).sum();
-            let by = off.iter().map(|of| effect(of) * of.2).sum::<f64>() / squares;
-            (rms(&|of| of.2 - by * effect(of)), by, cause)
+            let effect = |of: &Beside| dot((cause.moves)(of.place), of.along);
+            let squares: f64 = all.iter().map(|of| effect(of).powi(2)).sum();
+            let by = all.iter().map(|of| effect(of) * of.off).sum::<f64>() / squares;
+            (rms(&|of| of.off - by * effect(of)), by, cause)
         });
         let (left, by, cause) = fitted.filter(|of| of.0.is_finite()).min_by(|a, b| a.0.total_cmp(&b.0))?;
         let [as_if, question] = (cause.words)(by);
@@ -77,18 +87,19 @@ impl Gauged {
     }
 }
 
-/// Radius and height of the nominal point, the direction along the flank in the plane of both, and how far a point lies off along it, mm. A turn
-/// about z, and what lies along the normal, do not change that.
-fn along_meridian(at: [f64; 3], of: &SurfacePoint) -> Option<([f64; 2], [f64; 2], f64)> {
-    let SurfacePoint { outcome: Outcome::Solved, position: [x, y, z], normal: [nx, ny, nz], .. } = *of else {
-        return None;
-    };
-    let radius = x.hypot(y);
-    let outwards = (x * nx + y * ny) / radius;
-    let length = outwards.hypot(nz);
-    let along = [-nz / length, outwards / length];
-    let off = dot([at[0].hypot(at[1]) - radius, at[2] - z], along);
-    off.is_finite().then_some(([radius, z], along, off))
+impl Beside {
+    /// A turn about z, and what lies along the normal, do not change that.
+    fn of(at: [f64; 3], nominal: &SurfacePoint) -> Option<Beside> {
+        let SurfacePoint { outcome: Outcome::Solved, position: [x, y, z], normal: [nx, ny, nz], .. } = *nominal else {
+            return None;
+        };
+        let radius = x.hypot(y);
+        let outwards = (x * nx + y * ny) / radius;
+        let length = outwards.hypot(nz);
+        let along = [-nz / length, outwards / length];
+        let off = dot([at[0].hypot(at[1]) - radius, at[2] - z], along);
+        off.is_finite().then_some(Beside { place: [radius, z], along, off })
+    }
 }
 
 fn dot([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
