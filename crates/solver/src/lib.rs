@@ -25,7 +25,9 @@ mod roots;
 mod solid;
 mod surface;
 
-pub use analysis::adjustment::choice::{linear_rest, most_effective, most_independent, opposed, separated};
+pub use analysis::adjustment::choice::{
+    least_dispensable, linear_rest, most_effective, most_independent, opposed, separated,
+};
 pub use analysis::adjustment::fit::{AdjustedSurfaces, SettingsAdjustment, WantedPoints};
 pub use analysis::adjustment::shapes::Shapes;
 pub use analysis::adjustment::{AdjustableSurface, Foot, FootSearch, NearFoot, StartOfFoot};
@@ -72,6 +74,7 @@ pub use milling::pose::{Bending, CutterPose, Lean, NoPose};
 pub use milling::series::{Moving, PoseField, PoseSeries};
 pub use milling::side::{LeftOnWay, SideMotion, SidePass, SideStrip, left_on_way, side_directions};
 pub use milling::sweep::{LeftOver, SweptCutter};
+pub use newton::least_squares::outliers::LinearModel;
 pub use newton::least_squares::{
     LeastSquares, LeastSquaresFit, Linearized, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
 };

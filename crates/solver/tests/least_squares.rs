@@ -1,7 +1,7 @@
 //! Least squares with bounds, against closed forms.
 
 use faer::Mat;
-use flank_solver::{LeastSquares, LeastSquaresFit, Linearized, Range, RangeEnd, ScaledUnknown, SearchEnd};
+use flank_solver::{LeastSquares, LeastSquaresFit, LinearModel, Linearized, Range, RangeEnd, ScaledUnknown, SearchEnd};
 
 const EVERYWHERE: Range = Range { low: f64::NEG_INFINITY, high: f64::INFINITY };
 
@@ -98,14 +98,15 @@ fn covariance_and_leverages_are_those_of_a_straight_line() {
     near(covariance[0][0], 0.2, 1e-14);
     near(covariance[1][1], 0.1, 1e-14);
     near(covariance[0][1], 0.0, 1e-14);
+    let model = fit.linear_model();
     for (k, residual) in residuals.iter().enumerate() {
         let leverage = 0.2 + (k as f64 - 2.0).powi(2) / 10.0;
-        near(fit.leverage(k), leverage, 1e-14);
-        near(fit.left_out(&[k]).expect("determined")[0], residual / (1.0 - leverage), 1e-13);
+        near(model.leverage(k), leverage, 1e-14);
+        near(model.left_out(&[k]).expect("determined")[0], residual / (1.0 - leverage), 1e-13);
     }
-    assert_eq!(fit.left_out(&[0, 1, 2, 3]), None, "one value makes no line");
+    assert_eq!(model.left_out(&[0, 1, 2, 3]), None, "one value makes no line");
     // the line through the first three values, 1, -2, 0.5, has -0.1667 in their middle and falls by 0.25
-    let predicted = fit.left_out(&[3, 4]).expect("determined");
+    let predicted = model.left_out(&[3, 4]).expect("determined");
     near(predicted[0], -2.0 / 3.0 - 4.0, 1e-12);
     near(predicted[1], -11.0 / 12.0 - 2.0, 1e-12);
 }
@@ -183,4 +184,70 @@ fn steps_that_bend_alike_are_taken_together() {
     let last = fit.residuals[2];
     near(fit.values[0], 1.0 / (1.0 + 0.06 * last), 1e-12);
     near(fit.values[1], 2.0 / (1.0 + 0.002 * last), 1e-12);
+
+/// Values at five places in seven series, of which each may have an offset: what all lie on is `a + b t`, beside a pattern of a hundredth.
+fn series(offset: impl Fn(usize, usize) -> f64) -> LinearModel {
+    let pattern =
+        |row: usize, column: usize| 0.01 * ((12.9898 * row as f64 + 78.233 * column as f64).sin() * 43758.5453).fract();
+    let places = (0..35).map(|at| (at / 7, at % 7));
+    let values: Vec<f64> =
+        places.map(|(row, column)| 3.0 - 2.0 * row as f64 + pattern(row, column) + offset(row, column)).collect();
+    LinearModel::new(&values).with(&[vec![1.0; 35], (0..35).map(|at| (at / 7) as f64).collect()])
+}
+
+fn lines() -> Vec<Vec<usize>> {
+    let rows = (0..5).map(|row| (0..7).map(|column| 7 * row + column).collect());
+    rows.chain((0..7).map(|column| (0..5).map(|row| 7 * row + column).collect())).collect()
+}
+
+/// One by one they hide behind each other: each of six that are as far off makes what the others scatter by as large.
+#[test]
+fn residuals_that_hide_each_other_are_found() {
+    assert_eq!(series(|_, _| 0.0).outlying(&lines(), 1e-6), [], "nothing is off");
+    let off = [(0, 0, 1.0), (1, 4, -1.0), (2, 2, 1.0), (3, 6, 1.0), (4, 1, -1.0), (4, 5, 1.0)];
+    let offset = |row, column| off.iter().find(|of| (of.0, of.1) == (row, column)).map_or(0.0, |of| of.2);
+    let places: Vec<usize> = off.iter().map(|(row, column, _)| 7 * row + column).collect();
+    assert_eq!(series(offset).outlying(&lines(), 1e-6), places);
+    // no machine shows so little
+    assert_eq!(series(offset).outlying(&lines(), 2.0), []);
+}
+
+/// A row at the end that is off takes the straight line with it: what is left is largest in other rows. With two further points beside it, it is
+/// those and no other ones.
+#[test]
+fn lines_of_residuals_are_found_with_points_beside_them() {
+    for row in 0..5 {
+        let offset = |at: usize, column: usize| match (at, column) {
+            _ if at == row => 0.5,
+            (at, 3) if at == (row + 2) % 5 => -0.3,
+            _ => 0.0,
+        };
+        let mut wanted: Vec<usize> = (7 * row..7 * row + 7).chain([7 * ((row + 2) % 5) + 3]).collect();
+        wanted.sort_unstable();
+        let model = series(offset);
+        assert_eq!(model.outlying(&lines(), 1e-6), wanted, "row {row}");
+        // the line through the others, by the sums that give it
+        let rest = model.without(&wanted).expect("enough are left");
+        let others: Vec<usize> = (0..35).filter(|at| !wanted.contains(at)).collect();
+        let value = |at: usize| {
+            let (row, column) = (at / 7, at % 7);
+            3.0 - 2.0 * row as f64
+                + 0.01 * ((12.9898 * row as f64 + 78.233 * column as f64).sin() * 43758.5453).fract()
+                + offset(row, column)
+        };
+        let n = others.len() as f64;
+        let mean = |of: &dyn Fn(usize) -> f64| others.iter().map(|at| of(*at)).sum::<f64>() / n;
+        let place = |at: usize| (at / 7) as f64;
+        let (t, y) = (mean(&place), mean(&value));
+        let square = others.iter().map(|at| (place(*at) - t).powi(2)).sum::<f64>();
+        let slope = others.iter().map(|at| (place(*at) - t) * (value(*at) - y)).sum::<f64>() / square;
+        let left = |at: usize| value(at) - y - slope * (place(at) - t);
+        let variance = others.iter().map(|at| left(*at).powi(2)).sum::<f64>() / (n - 2.0);
+        near(rest.variance().expect("more than two"), variance, 1e-14);
+        for at in wanted {
+            let (off, deviation) = rest.off(at);
+            near(off, left(at), 1e-12);
+            near(deviation, (variance * (1.0 + 1.0 / n + (place(at) - t).powi(2) / square)).sqrt(), 1e-12);
+        }
+    }
 }

@@ -129,6 +129,8 @@ pub enum RemarkKind {
     Outlier,
     /// Deviations fit better in the other order of rows or columns.
     OtherOrder,
+    /// Measured points lie beside their places as those of a gear do that is mounted or scaled otherwise.
+    OtherMounting,
     /// What settings take away of a deviation is not more than it scatters.
     NotShown,
     /// Over tolerances a result is not proportional to them.

@@ -22,6 +22,10 @@ const LONGEST: f64 = 1.0 / 8.0;
 const SHORTEST: f64 = 1.0 / 256.0;
 /// A number that settings change by less than this share of what they changed it by at the beginning has come to its end.
 const TURNED_BACK: f64 = 1e-3;
+/// Trials at which the flanks do not touch: with more of them than so many, and so many times as many as there are others, a search creeps along the
+/// border of where they do, and ends there. None that came to what it looked for had as many.
+const LOST: usize = 12;
+const LOST_TO_FOUND: usize = 2;
 /// How often conditions that need not hold exactly are weighed anew so that each is near enough, as long as the one that is farthest off comes
 /// nearer by more than a hundredth.
 const MOST_WEIGHINGS: usize = 30;
@@ -65,24 +69,16 @@ impl ContactSynthesis<'_> {
     /// If there are not as many settings as the pair has parameters.
     #[must_use]
     pub fn solve(&self) -> Option<SynthesizedContact> {
-        let within = self.within_ranges()?;
-        if self.is_met(&within.vertex) {
-            return Some(self.least_changed(within));
-        }
-        let problem = self.problem.clone().beyond_ranges();
-        let ContactSynthesis { vertex, wishes, settings, .. } = self.clone();
-        let free = ContactSynthesis { problem: &problem, vertex, wishes, settings };
-        let told = |at: ContactPoint| ContactPoint {
-            outcome: verdict(&at.all_unknowns(), &self.problem.ranges, true, false),
-            ..at
-        };
-        match free.within_ranges() {
-            Some(beyond) if free.is_met(&beyond.vertex) => {
-                let least = free.least_changed(beyond);
-                Some(SynthesizedContact { vertex: told(least.vertex.clone()), ..least })
+        let (within, beyond) = self.searched()?;
+        match beyond {
+            _ if self.is_met(&within.vertex) => Some(self.least_changed(within)),
+            Some(beyond) if self.is_met(&beyond.vertex) => {
+                let problem = self.problem.clone().beyond_ranges();
+                let least = self.in_problem(&problem).least_changed(beyond);
+                Some(SynthesizedContact { vertex: self.told(least.vertex.clone()), ..least })
             }
             beyond => {
-                let beyond = beyond.and_then(|of| of.way).map(|(share, at)| (share, told(at)));
+                let beyond = beyond.and_then(|of| of.way).map(|(share, at)| (share, self.told(at)));
                 let ways = within.way.clone().into_iter().chain(beyond);
                 let way = ways.max_by(|a, b| a.0.total_cmp(&b.0));
                 let nearest =
@@ -90,6 +86,40 @@ impl ContactSynthesis<'_> {
                 Some(SynthesizedContact { way, ..nearest })
             }
         }
+    }
+
+    /// A contact at which all is as it is wanted, with whatever changes of settings a search comes to, within the ranges or beyond. `None` where no search
+    /// comes to one.
+    ///
+    /// # Panics
+    /// If there are not as many settings as the pair has parameters.
+    #[must_use]
+    pub fn met(&self) -> Option<ContactPoint> {
+        let (within, beyond) = self.searched()?;
+        let beyond = beyond.map(|of| self.told(of.vertex));
+        [within.vertex].into_iter().chain(beyond).find(|at| self.is_met(at))
+    }
+
+    /// What is found within the ranges of tools and of the lag, and beyond them if that is not met. `None` if a number is not there at the start.
+    fn searched(&self) -> Option<(SynthesizedContact, Option<SynthesizedContact>)> {
+        let within = self.within_ranges()?;
+        if self.is_met(&within.vertex) {
+            return Some((within, None));
+        }
+        let problem = self.problem.clone().beyond_ranges();
+        let beyond = self.in_problem(&problem).within_ranges();
+        Some((within, beyond))
+    }
+
+    /// The same of a pair with other ranges.
+    fn in_problem<'p>(&'p self, problem: &'p ContactProblem) -> ContactSynthesis<'p> {
+        let ContactSynthesis { vertex, wishes, settings, .. } = self.clone();
+        ContactSynthesis { problem, vertex, wishes, settings }
+    }
+
+    /// A contact with what the ranges of the pair say of it.
+    fn told(&self, at: ContactPoint) -> ContactPoint {
+        ContactPoint { outcome: verdict(&at.all_unknowns(), &self.problem.ranges, true, false), ..at }
     }
 
     /// The same within the ranges of tools and of the lag alone, and with whatever changes of settings the search comes to.
@@ -334,9 +364,16 @@ impl ContactSynthesis<'_> {
         let problem = LeastSquares { unknowns, exact, resolution: 0.0, uses_weak: false, settled, given_up: None };
         // a step that is not taken leads to a contact, too
         let mut tried: Vec<(Vec<f64>, ContactPoint)> = Vec::new();
+        let mut lost = 0;
         let fit = problem.solve(|values| {
+            if lost > LOST + LOST_TO_FOUND * tried.len() {
+                return None;
+            }
             let near = tried.last().map_or(self.vertex, |(_, at)| at);
-            let (at, linearized) = self.linearized(near, values)?;
+            let Some((at, linearized)) = self.linearized(near, values) else {
+                lost += 1;
+                return None;
+            };
             tried.push((values.to_vec(), at));
             Some(ordered(values, linearized))
         })?;

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use flank_chain_dsl::Job;
-use flank_solver::{NearFoot, Outcome, SurfacePoint};
+use flank_solver::{Alignment, NearFoot, Outcome, SurfacePoint};
 
 use crate::compare::deviation;
 use crate::compare::gauged::{Gauged, GaugedArea};
@@ -146,6 +146,12 @@ impl<'j, 'g> Aim<'j, 'g> {
         let nominal: Vec<SurfacePoint> = measured.iter().flat_map(|of| of.nominal.iter().cloned()).collect();
         let mean = aims.first().and_then(|aim| aim.of.alignment().mean(&positions, &nominal));
         mean.unwrap_or(aims.first().map_or(0.0, |aim| aim.motion))
+    }
+
+    /// What measured points look as if, where they lie beside their places.
+    pub(super) fn mounted(&self) -> Option<String> {
+        let of = self.measured.as_ref().filter(|_| self.of.alignment() == Alignment::Turn)?;
+        of.mounted()
     }
 
     /// # Errors

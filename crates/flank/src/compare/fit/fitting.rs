@@ -2,15 +2,15 @@
 
 use flank_chain_dsl::Parameter;
 use flank_solver::{
-    AdjustedSurfaces, Alignment, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection, linear_rest,
-    most_effective,
+    AdjustedSurfaces, Alignment, EaseOff, Range, RangeEnd, ScaledUnknown, SearchEnd, SingularDirection,
+    least_dispensable, linear_rest, most_effective,
 };
 
 use super::aim::Aim;
 use super::problem::{self, Problem};
 use super::result::{
-    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, OutlyingPoint,
-    RangeBound, SettingChange, SettingsChoice, SettingsDirection,
+    AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, RangeBound,
+    SettingChange, SettingsChoice, SettingsDirection,
 };
 use super::words::{self, SHARE, Unknown, What, motion_name};
 use super::{corrected, keep, settings};
@@ -27,11 +27,6 @@ const CANDIDATE: f64 = 1e-3;
 /// ... until the next would lower what is left by less than this, mm.
 const LEAST: f64 = 1e-4;
 
-/// Points farther off what the others predict, in standard deviations, do not go with them: of 45 that scatter as Gauss has it one in
-/// three hundred grids shows one.
-const OUTLYING: f64 = 4.0;
-/// No machine measures to this, mm: what is nearer goes with the others.
-const NEAR: f64 = 1e-5;
 /// Which settings are looked for and what comes of it.
 pub(super) struct Fitting<'a, 'g> {
     pub(super) aims: &'a [Aim<'a, 'g>],
@@ -58,8 +53,21 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let of_points = || scatter(all_leave, off.len(), own.len());
             let noise = request.noise.unwrap_or_else(|| if request.is_wish() { 0.0 } else { of_points() });
             own.truncate(candidates.len());
-            let mut free: Vec<usize> =
-                most_effective(off, &own, &motions, LEAST, noise).into_iter().map(|k| candidates[k]).collect();
+            let mut taken = most_effective(off, &own, &motions, LEAST, noise);
+            let rest = |of: &[usize]| {
+                let effects: Vec<Vec<f64>> =
+                    of.iter().map(|k| own[*k].clone()).chain(motions.iter().cloned()).collect();
+                linear_rest(off, &effects, request.resolution)
+            };
+            // several may do together what none of them does by itself
+            let one_by_one = rest(&taken);
+            if one_by_one - all_leave >= LEAST {
+                let others = least_dispensable(off, (&own, &motions), request.resolution, (LEAST, noise));
+                if one_by_one - rest(&others) >= LEAST {
+                    taken = others;
+                }
+            }
+            let mut free: Vec<usize> = taken.into_iter().map(|k| candidates[k]).collect();
             free.sort_unstable();
             let choice = SettingsChoice {
                 candidates: candidates.iter().map(|k| self.problem.settings[*k].name.clone()).collect(),
@@ -158,7 +166,8 @@ impl<'a, 'g> Fitting<'a, 'g> {
             // of points one by one nothing is asked where only shapes are fitted
             leave_out_um: self.leave_out(main).filter(|_| request.order.is_none()).map(|error| 1e3 * error),
             kept: keep::told(&self.problem.keeps, &correction.fit.exact),
-            outliers: if is_wish || request.order.is_some() { vec![] } else { self.outliers(main) },
+            outliers: Vec::new(),
+            without_outliers_um: None,
             corrected: None,
             files: Vec::new(),
             not_done: self.aims.iter().flat_map(|aim| aim.missing.clone()).collect(),
@@ -228,7 +237,7 @@ impl<'a, 'g> Fitting<'a, 'g> {
             let Range { low, high } = self.problem.unknowns[k].range;
             let at_end = held.filter(|_| of.fit.values[k] <= low || of.fit.values[k] >= high);
             let is_told = of.fit.directions.iter().filter(|of| !of.is_used).all(|of| of.shares[k].abs() <= SHARE);
-            let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).sqrt());
+            let uncertain = variance.map(|variance| (variance * of.fit.covariance[k][k]).abs().sqrt());
             AdjustedSetting {
                 name: setting.name.clone(),
                 is_error: setting.is_error,
@@ -300,48 +309,40 @@ impl<'a, 'g> Fitting<'a, 'g> {
 
     /// The error with which rows and columns are predicted, mm.
     fn leave_out(&self, of: &AdjustedSurfaces) -> Option<f64> {
-        let (mut errors, mut from) = (Vec::new(), 0);
-        for (aim, places) in self.aims.iter().zip(&self.problem.places) {
-            let columns = aim.counts[1].max(1);
-            let line = |is_in: &dyn Fn(usize) -> bool| -> Vec<usize> {
-                places.iter().enumerate().filter(|(_, at)| is_in(**at)).map(|(k, _)| from + k).collect()
-            };
-            let rows = (0..aim.counts[0]).map(|row| line(&|at| at / columns == row));
-            let lines: Vec<Vec<usize>> =
-                rows.chain((0..columns).map(|column| line(&|at| at % columns == column))).collect();
-            errors.extend(
-                lines.iter().filter(|line| !line.is_empty()).filter_map(|line| of.fit.left_out(line)).flatten(),
-            );
-            from += places.len();
-        }
+        let model = of.fit.linear_model();
+        let errors: Vec<f64> = self.lines().iter().filter_map(|line| model.left_out(&line.points)).flatten().collect();
         (!errors.is_empty()).then(|| rms(&errors))
     }
 
-    /// Points that the others predict elsewhere.
-    fn outliers(&self, of: &AdjustedSurfaces) -> Vec<OutlyingPoint> {
-        let free = of.fit.residuals.len().saturating_sub(of.fit.rank() + 1);
-        let squares: f64 = of.fit.residuals.iter().map(|off| off * off).sum();
-        let own = self
-            .aims
-            .iter()
-            .zip(&self.problem.places)
-            .flat_map(|(aim, places)| places.iter().map(move |at| (aim, *at)));
-        let outlier = |(k, (aim, at)): (usize, (&Aim<'_, '_>, usize))| {
-            let (off, left) = (of.fit.residuals[k], 1.0 - of.fit.leverage(k));
-            // the scatter of the others, without this one
-            let variance = (squares - off * off / left) / free as f64;
-            let sigmas = off / (variance.max(0.0) * left).sqrt();
-            let is_outlying = free > 0 && left > 0.0 && (off / left).abs() > NEAR && sigmas.abs() > OUTLYING;
-            is_outlying.then(|| OutlyingPoint {
-                surface: aim.of.surface.name.clone(),
-                row: at / aim.counts[1] + 1,
-                column: at % aim.counts[1] + 1,
-                off_um: 1e3 * off / left,
-                sigmas: sigmas.abs(),
-            })
-        };
-        own.enumerate().filter_map(outlier).collect()
+    /// Rows and columns with their points, of each surface those first.
+    pub(super) fn lines(&self) -> Vec<GridLine> {
+        let (mut lines, mut from) = (Vec::new(), 0);
+        for (surface, (aim, places)) in self.aims.iter().zip(&self.problem.places).enumerate() {
+            let columns = aim.counts[1].max(1);
+            let mut rows = vec![Vec::new(); aim.counts[0]];
+            let mut across = vec![Vec::new(); columns];
+            for (k, at) in places.iter().enumerate() {
+                rows[at / columns].push(from + k);
+                across[at % columns].push(from + k);
+            }
+            let of = |is_row: bool| move |(at, points)| GridLine { surface, is_row, at, points };
+            lines.extend(rows.into_iter().enumerate().map(of(true)));
+            lines.extend(across.into_iter().enumerate().map(of(false)));
+            from += places.len();
+        }
+        lines.retain(|line| !line.points.is_empty());
+        lines
     }
+}
+
+/// A row or a column of a grid.
+pub(super) struct GridLine {
+    pub(super) surface: usize,
+    pub(super) is_row: bool,
+    /// From 0.
+    pub(super) at: usize,
+    /// By their places among all points.
+    pub(super) points: Vec<usize>,
 }
 
 /// What residuals scatter by of which so many unknowns leave this, root of the mean square.

@@ -4,6 +4,8 @@ mod aim;
 pub(super) mod corrected;
 mod fitting;
 mod keep;
+mod mounting;
+mod outliers;
 mod problem;
 pub(crate) mod result;
 pub(super) mod settings;
@@ -75,8 +77,12 @@ pub fn fit(request: &FitRequest, monitor: &dyn Monitor) -> Result<FitResult, Fai
     let Found { now, free, choice, identification, correction } = Found::of(&aims, &problem, request)?;
     let fitting = Fitting { aims: &aims, problem: &problem, now: &now };
     let result = fitting.result(request, (&free, choice), (identification.as_ref(), &correction));
-    let result =
-        verdict::judged(result, &fitting, (request, identification.as_ref().unwrap_or(&correction), &correction));
+    let result = verdict::judged(
+        result,
+        &fitting,
+        (request, &free),
+        (identification.as_ref().unwrap_or(&correction), &correction),
+    );
     let values: Vec<(String, String)> =
         problem.settable(&free).iter().map(|&k| fitting.new_value(k, &correction)).collect();
     let (corrected, files) = match &request.write {

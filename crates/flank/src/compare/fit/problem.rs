@@ -1,5 +1,6 @@
 //! The settings of surfaces, and points that these shall go through, as least squares.
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use flank_chain_dsl::{GeneratedSurface, Parameter};
@@ -133,6 +134,21 @@ impl<'p, 'g> Problem<'p, 'g> {
         self.shapes.as_ref().map_or_else(|| of.clone(), |shapes| shapes.part(&of))
     }
 
+    /// Shapes of deviations that are smooth over each surface: at the most squares in rows and columns, in fewer lines less, so that each line is
+    /// predicted by two more than it takes.
+    pub(super) fn smooth(&self, aims: &[Aim<'_, '_>]) -> Vec<Vec<f64>> {
+        let powers = |surface: usize| {
+            let columns = aims[surface].counts[1];
+            let most = |line: &dyn Fn(&usize) -> usize| {
+                let lines: BTreeSet<usize> = self.places[surface].iter().map(line).collect();
+                lines.len().saturating_sub(3).min(2) as i32
+            };
+            let [along_v, along_u] = [most(&|at| at / columns), most(&|at| at % columns)];
+            (0..=along_v).flat_map(|v| (0..=along_u).map(move |u| [v, u])).collect()
+        };
+        products(aims, &self.places, powers)
+    }
+
     /// Of settings, by their places, those that somebody can set: an error of the machine stays what it is.
     pub(super) fn settable(&self, free: &[usize]) -> Vec<usize> {
         free.iter().copied().filter(|k| !self.settings[*k].is_error).collect()
@@ -185,6 +201,54 @@ impl<'p, 'g> Problem<'p, 'g> {
         self.fitted((&self.points, &[]), self.motions(now), (free, &[]))
     }
 
+    /// The same without some of the points, by their places among all: the surfaces as they are and with some settings free. `None` if a point loses
+    /// its foot.
+    pub(super) fn without(
+        &self,
+        now: &AdjustedSurfaces,
+        (left_out, free): (&[usize], &[usize]),
+    ) -> Option<[AdjustedSurfaces; 2]> {
+        let mut from = 0;
+        let of_surface = |points: &Vec<Aimed>| -> Vec<Aimed> {
+            let own = points.iter().enumerate().filter(|(k, _)| !left_out.contains(&(from + k)));
+            let kept = own.map(|(_, point)| point.clone()).collect();
+            from += points.len();
+            kept
+        };
+        let points: Vec<Vec<Aimed>> = self.points.iter().map(of_surface).collect();
+        let before = self.fitted((&points, &[]), self.motions(now), (&[], &[])).ok()?;
+        let left = self.fitted((&points, &[]), self.motions(&before), (free, &[])).ok()?;
+        Some([before, left])
+    }
+
+    /// All points with the settings and the motions of a fit. `None` if one loses its foot.
+    pub(super) fn all_at(&self, fit: &AdjustedSurfaces) -> Option<AdjustedSurfaces> {
+        let at = |of: &ScaledUnknown, value: &f64| held(ScaledUnknown { start: *value, ..*of });
+        let motions = self.motions(fit);
+        let adjustment = self.adjustment((&self.points, &[]), motions, (&[], &[]));
+        let settled = SettingsAdjustment {
+            settings: self.unknowns.iter().zip(&fit.fit.values).map(|(of, value)| at(of, value)).collect(),
+            motion: at(&self.motion, &motions[0]),
+            further: self.further.iter().zip(&motions[1..]).map(|(of, value)| at(of, value)).collect(),
+            ..adjustment
+        };
+        settled.solve()
+    }
+
+    /// What the directions that a fit uses do to the distances of points.
+    pub(super) fn directions(&self, fit: &AdjustedSurfaces, points: &AdjustedSurfaces) -> Vec<Vec<f64>> {
+        let unknowns = self.unknowns.iter().chain([&self.motion]).chain(&self.further);
+        let effects: Vec<(f64, Vec<f64>)> = unknowns.enumerate().map(|(k, of)| (of.scale, points.effect(k))).collect();
+        let along = |shares: &Vec<f64>| {
+            let mut sum = vec![0.0; self.count()];
+            for (share, (scale, effect)) in shares.iter().zip(&effects) {
+                sum.iter_mut().zip(effect).for_each(|(sum, of)| *sum += share * scale * of);
+            }
+            sum
+        };
+        fit.fit.directions.iter().filter(|of| of.is_used).map(|of| along(&of.shares)).collect()
+    }
+
     /// The same for points that lie on the other side of the surface by a share of the way.
     ///
     /// # Errors
@@ -233,10 +297,22 @@ impl<'p, 'g> Problem<'p, 'g> {
     /// From these motions, with settings free, some of which are fixed at values; all others stay as they are.
     fn fitted(
         &self,
-        (points, keeps): (&[Vec<Aimed>], &[Keep]),
+        points: (&[Vec<Aimed>], &[Keep]),
+        motions: &[f64],
+        settings: (&[usize], &[(usize, f64)]),
+    ) -> Result<AdjustedSurfaces, Failure> {
+        let lost =
+            "the points have no feet on the surface where they lie nearest to it: are they points of this flank?";
+        let solved = if self.count() > 0 { self.adjustment(points, motions, settings).solve() } else { None };
+        solved.ok_or(Failure::Unsolved(lost.to_string()))
+    }
+
+    fn adjustment<'s>(
+        &'s self,
+        (points, keeps): (&[Vec<Aimed>], &'s [Keep]),
         motions: &[f64],
         (free, fixed): (&[usize], &[(usize, f64)]),
-    ) -> Result<AdjustedSurfaces, Failure> {
+    ) -> SettingsAdjustment<'s> {
         let kept = keeps.iter().map(|keep| (&keep.surface, &keep.points)).map(wanted);
         let settings = self.unknowns.iter().enumerate();
         let settings = settings.map(|(k, of)| match fixed.iter().find(|(at, _)| *at == k) {
@@ -244,7 +320,7 @@ impl<'p, 'g> Problem<'p, 'g> {
             None if free.contains(&k) => *of,
             None => held(*of),
         });
-        let adjustment = SettingsAdjustment {
+        SettingsAdjustment {
             wanted: self.surfaces.iter().zip(points).map(wanted).collect(),
             kept: kept.collect(),
             settings: settings.collect(),
@@ -259,33 +335,35 @@ impl<'p, 'g> Problem<'p, 'g> {
             shapes: self.shapes.clone(),
             resolution: self.resolution,
             uses_weak: self.is_measured,
-        };
-        let lost =
-            "the points have no feet on the surface where they lie nearest to it: are they points of this flank?";
-        let solved = if self.count() > 0 { adjustment.solve() } else { None };
-        solved.ok_or(Failure::Unsolved(lost.to_string()))
+        }
     }
 }
 
 /// Of each surface a constant, the slopes in both directions of its grid and, of the second order, their squares and their product.
 fn shapes(aims: &[Aim<'_, '_>], places: &[Vec<usize>], order: u8) -> Shapes {
+    let terms: &[[i32; 2]] = &[[0, 0], [1, 0], [0, 1], [2, 0], [1, 1], [0, 2]];
+    let terms = &terms[..if order == 1 { 3 } else { 6 }];
+    Shapes::new(&products(aims, places, |_| terms.to_vec()))
+}
+
+/// Of each surface the products of powers of the places of its points, from -1 to 1 in rows and in columns.
+fn products(aims: &[Aim<'_, '_>], places: &[Vec<usize>], powers: impl Fn(usize) -> Vec<[i32; 2]>) -> Vec<Vec<f64>> {
     let all: usize = places.iter().map(Vec::len).sum();
     let mut from = 0;
     let mut found = Vec::new();
-    for (aim, places) in aims.iter().zip(places) {
+    for (surface, (aim, places)) in aims.iter().zip(places).enumerate() {
         let share = |at: usize, count: usize| if count > 1 { 2.0 * at as f64 / (count - 1) as f64 - 1.0 } else { 0.0 };
-        let terms = |at: usize| {
-            let [v, u] = [share(at / aim.counts[1], aim.counts[0]), share(at % aim.counts[1], aim.counts[1])];
-            [1.0, v, u, v * v, v * u, u * u]
-        };
-        for term in 0..if order == 1 { 3 } else { 6 } {
+        for [along_v, along_u] in powers(surface) {
             let mut shape = vec![0.0; all];
-            shape[from..].iter_mut().zip(places).for_each(|(value, at)| *value = terms(*at)[term]);
+            for (value, at) in shape[from..].iter_mut().zip(places) {
+                let [v, u] = [share(at / aim.counts[1], aim.counts[0]), share(at % aim.counts[1], aim.counts[1])];
+                *value = v.powi(along_v) * u.powi(along_u);
+            }
             found.push(shape);
         }
         from += places.len();
     }
-    Shapes::new(&found)
+    found
 }
 
 /// Where a surface ends in one of its unknowns.

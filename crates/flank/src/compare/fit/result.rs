@@ -55,8 +55,11 @@ pub struct FitResult {
     pub leave_out_um: Option<f64>,
     /// Surfaces that the correction leaves where they are.
     pub kept: Vec<KeptSurface>,
-    /// Points that lie off more than four standard deviations of what the others predict. They are not left out.
+    /// Points that lie more than four standard deviations off what all points that are not among them predict. They are not left out.
     pub outliers: Vec<OutlyingPoint>,
+    /// Root of the mean square of what the settings would leave of the points that are not outliers, by derivatives; null where there are no outliers,
+    /// and where `order` is fitted alone.
+    pub without_outliers_um: Option<f64>,
     /// The spec with the corrected settings, if it was asked for and not written.
     pub corrected: Option<String>,
     /// Files written.
@@ -219,7 +222,7 @@ pub struct OutlyingPoint {
     pub row: usize,
     /// From 1.
     pub column: usize,
-    /// How far it lies off what the others predict.
+    /// How far it lies off what the points that are no outliers predict.
     pub off_um: f64,
     /// The same in standard deviations.
     pub sigmas: f64,

@@ -4,7 +4,8 @@ use flank_export::fixed;
 use flank_solver::{AdjustedSurfaces, linear_rest};
 
 use super::fitting::{Fitting, rms};
-use super::result::{FitResult, KeptSurface, OutlyingPoint};
+use super::outliers::{Others, Outliers};
+use super::result::{FitResult, KeptSurface};
 use super::words::NOTHING;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::FitRequest;
@@ -21,33 +22,40 @@ const CHANCE: f64 = 0.7;
 pub(super) fn judged(
     mut result: FitResult,
     fitting: &Fitting<'_, '_>,
-    (request, main, correction): (&FitRequest, &AdjustedSurfaces, &AdjustedSurfaces),
+    (request, free): (&FitRequest, &[usize]),
+    (main, correction): (&AdjustedSurfaces, &AdjustedSurfaces),
 ) -> FitResult {
-    let surface = &fitting.aims[0].of.surface.name;
+    let (surface, names) = (&fitting.aims[0].of.surface.name, fitting.names());
+    let Outliers { points, remarks: outlying, others } = match request.is_wish() {
+        true => Outliers::none(),
+        false => Outliers::of(fitting, main, (free, request.order.is_some())),
+    };
+    result.outliers = points;
+    result.without_outliers_um = others.as_ref().map(|of| 1e3 * of.left);
     // errors alone are identified, and nothing is to be set
     let corrected = if result.correction.settings.is_empty() { 0.0 } else { result.correction.left_um };
     let left = result.identification.as_ref().unwrap_or(&result.correction).left_um.max(corrected);
     if left > result.within_um {
-        let message = format!("not met: {left:.3} um rms is left of {surface}, more than {} um", result.within_um);
+        let message = format!("not met: {left:.3} um rms is left of {names}, more than {} um", result.within_um);
         let reasons = reasons(&result, (request, main));
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, surface, message).with(reasons));
     }
     if left <= result.within_um && !is_settled(&result) {
-        let message = format!("the search came to no end: other settings may make {surface} as well");
+        let message = format!("the search came to no end: other settings may make {names} as well");
         result.remarks.push(Remark::new(RemarkKind::NotShown, surface, message));
     }
     let unmet: usize =
         fitting.aims.iter().zip(&result.flanks).map(|(aim, of)| aim.points.iter().flatten().count() - of.known).sum();
     if unmet > 0 {
         let message =
-            format!("no deviation at {unmet} points: no normal of {surface} within its ranges goes through them");
+            format!("no deviation at {unmet} points: no normal of {names} within its ranges goes through them");
         result.not_done.push(NotDone::new(NotDoneKind::NoDeviation, surface, message));
     }
     let (beyond, ends) = fitting.problem.beyond(correction);
     if beyond > 0 {
         let message = format!(
-            "with the corrected settings {surface} ends before {beyond} of {} points: they lie beyond the range of {}; the fit takes the \
-             surface to go on there",
+            "with the corrected settings {beyond} of {} points lie beyond the end of {names}, of the range of {}; the fit takes the surface to \
+             go on there",
             fitting.problem.count(),
             ends.join(", ")
         );
@@ -60,18 +68,17 @@ pub(super) fn judged(
         );
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, name, message));
     }
-    result.remarks.extend(result.outliers.iter().map(|point| {
-        let OutlyingPoint { surface, row, column, off_um, sigmas } = point;
-        let message = format!(
-            "row {row}, column {column} of {surface} lies {off_um:.3} um off what the others predict, {sigmas:.1} standard deviations; it \
-             counts as all do: leave its numbers empty if it was measured wrong"
-        );
-        Remark::new(RemarkKind::Outlier, surface, message)
-    }));
-    if let Some(remark) = not_shown(&result, fitting, (request, main)) {
+    result.remarks.extend(outlying);
+    if let Some(remark) = not_shown(&result, fitting, (request, main), others.as_ref()) {
         result.remarks.push(remark);
     }
     result.remarks.extend(fitting.reversed(request, main));
+    result.remarks.extend(
+        fitting
+            .aims
+            .iter()
+            .filter_map(|aim| Some(Remark::new(RemarkKind::OtherMounting, &aim.of.surface.name, aim.mounted()?))),
+    );
     result
 }
 
@@ -85,6 +92,7 @@ fn not_shown(
     result: &FitResult,
     fitting: &Fitting<'_, '_>,
     (request, main): (&FitRequest, &AdjustedSurfaces),
+    others: Option<&Others>,
 ) -> Option<Remark> {
     let surface = &fitting.aims[0].of.surface.name;
     let identified = result.identification.as_ref().map_or(0, |of| of.settings.len());
@@ -101,15 +109,19 @@ fn not_shown(
         );
         return Some(Remark::new(RemarkKind::NotShown, surface, message));
     }
-    let (count, rank) = (main.fit.residuals.len(), main.fit.rank());
+    let (count, rank, before, left) = match others {
+        Some(of) => (of.count, of.rank, of.before, of.left),
+        None => (main.fit.residuals.len(), main.fit.rank(), fitting.now.rms(), main.rms()),
+    };
+    let without = if others.is_some() { "without the points that do not go with the others " } else { "" };
     // of scatter alone, unknowns take away their share
     let scatter = (count.saturating_sub(rank).max(1) as f64 / count.max(1) as f64).sqrt();
-    let is_chance = count > rank && main.rms() > CHANCE.sqrt() * scatter * fitting.now.rms();
+    let is_chance = count > rank && left > CHANCE.sqrt() * scatter * before;
     is_chance.then(|| {
         let message = format!(
-            "the settings take {} of {} um rms away, not much more than they would of measuring noise alone: the changes may mean nothing",
-            fixed(result.before_um - 1e3 * main.rms(), 3),
-            fixed(result.before_um, 3)
+            "{without}the settings take {} of {} um rms away, not much more than they would of measuring noise alone: the changes may mean nothing",
+            fixed(1e3 * (before - left), 3),
+            fixed(1e3 * before, 3)
         );
         Remark::new(RemarkKind::NotShown, surface, message)
     })
@@ -133,23 +145,41 @@ fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)
     if !is_settled(result) {
         reasons.push("the search came to no end: the points may lie too far off to be reached".to_string());
     }
+    if let Some(without) = result.without_outliers_um {
+        reasons.push(format!(
+            "outliers: of the points that go together the settings would leave {} um rms; the others stand in the notes",
+            fixed(without, 3)
+        ));
+    }
+    let is_enough = result.without_outliers_um.is_some_and(|without| without <= result.within_um);
     let unused = main.fit.directions.iter().filter(|of| !of.is_used).count();
+    // what shows nothing shows nothing at a finer resolution
+    let weak = main.fit.directions.iter().filter(|of| !of.is_used && of.size >= NOTHING).count();
     let all = main.fit.directions.len();
-    if bound.is_empty() {
+    if bound.is_empty() && !is_enough {
         let more = if request.vary.is_empty() { "" } else { "; more settings with option `vary` may" };
-        let finer = match unused {
+        let finer = match weak {
             0 => String::new(),
             _ => format!("; option `resolution` below {} um takes in more of them", request.resolution * 1e3),
         };
-        reasons.push(format!(
-            "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{more}{finer}",
-            all - unused
-        ));
+        reasons.push(match all {
+            0 => format!("rank: what is held leaves the settings no direction in which to move the flank{more}"),
+            _ => format!(
+                "rank: the {} of {all} directions in which the settings move the flank do not reach the rest{more}{finer}",
+                all - unused
+            ),
+        });
     }
     reasons
 }
 
 impl Fitting<'_, '_> {
+    /// The surfaces.
+    fn names(&self) -> String {
+        let names: Vec<&str> = self.aims.iter().map(|aim| aim.of.surface.name.as_str()).collect();
+        names.join(" and ")
+    }
+
     /// Whether the same deviations from the other end, or upside down, go with the settings.
     fn reversed(&self, request: &FitRequest, main: &AdjustedSurfaces) -> Option<Remark> {
         // what a bound keeps back says nothing of the order of the points

@@ -111,8 +111,8 @@ fn searched<'p, 'g>(
     let mut problem = Problem::new(job, members, conditions, vertex, (request, 0..1))?;
     let found = problem.solve()?;
     session.check()?;
-    let is_met = |found: &SynthesizedContact| verdict::is_met(members, conditions, &found.vertex);
-    if is_met(&found) || verdict::is_hopeless(members, conditions) || problem.chosen_of.is_none() {
+    let is_met = |at: &ContactPoint| verdict::is_met(members, conditions, at);
+    if is_met(&found.vertex) || verdict::is_hopeless(members, conditions) || problem.chosen_of.is_none() {
         return Ok((problem, found));
     }
     for groups in OTHER_GROUPS {
@@ -120,10 +120,11 @@ fn searched<'p, 'g>(
         if others.settings.is_empty() {
             break;
         }
-        let with_others = others.solve();
+        let is_there = others.is_met_somewhere();
         session.check()?;
-        if let Ok(found) = with_others
-            && is_met(&found)
+        if is_there
+            && let Ok(found) = others.solve()
+            && is_met(&found.vertex)
         {
             return Ok((others, found));
         }

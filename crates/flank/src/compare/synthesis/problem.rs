@@ -129,6 +129,12 @@ impl<'p, 'g> Problem<'p, 'g> {
         Ok(found)
     }
 
+    /// Whether a search comes to where all conditions hold, before settings are brought onto their steps; in less time than [`Problem::solve`] where
+    /// none does.
+    pub(super) fn is_met_somewhere(&self) -> bool {
+        self.synthesis(self.wishes.clone(), &self.unknowns).met().is_some()
+    }
+
     /// As near to one condition as the others allow, from the settings of the job or from those that were found; `None` where that is not known.
     pub(super) fn nearest(&self, condition: usize, found: &SynthesizedContact) -> Option<ContactPoint> {
         self.synthesis(self.wishes.clone(), &self.unknowns).nearest(condition, found)
@@ -139,8 +145,7 @@ impl<'p, 'g> Problem<'p, 'g> {
     pub(super) fn against(&self, is_met: impl Fn(&[usize], &ContactPoint) -> bool) -> Vec<usize> {
         let are_met = |of: &[usize]| {
             let wishes = of.iter().map(|k| self.wishes[*k]).collect();
-            let found = self.synthesis(wishes, &self.unknowns).solve();
-            found.is_some_and(|found| is_met(of, &found.vertex))
+            self.synthesis(wishes, &self.unknowns).met().is_some_and(|at| is_met(of, &at))
         };
         let all = 0..self.wishes.len();
         // a search that meets nothing takes long: one condition that is out of reach would be in several

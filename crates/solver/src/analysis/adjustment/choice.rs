@@ -66,6 +66,39 @@ pub fn most_effective(
     }
 }
 
+/// Of all settings those that are left when one after the other is put aside without which the linear model leaves least, until the next would raise
+/// its root of the mean square by `least`, and by more than twice `noise` as one number: what settings do together that none does by itself.
+/// `resolution` as for [`linear_rest`], the others as for [`most_effective`].
+///
+/// # Panics
+/// If entries are not as long as the residuals.
+#[must_use]
+pub fn least_dispensable(
+    residuals: &[f64],
+    (effects, always): (&[Vec<f64>], &[Vec<f64>]),
+    resolution: f64,
+    (least, noise): (f64, f64),
+) -> Vec<usize> {
+    let count = residuals.len() as f64;
+    let rest = |taken: &[usize]| {
+        let own = taken.iter().map(|k| effects[*k].clone()).chain(always.iter().cloned());
+        linear_rest(residuals, &own.collect::<Vec<_>>(), resolution)
+    };
+    let mut taken: Vec<usize> = (0..effects.len()).collect();
+    let mut now = rest(&taken);
+    while !taken.is_empty() {
+        let without = |k: &usize| taken.iter().copied().filter(|of| of != k).collect::<Vec<usize>>();
+        let each = taken.iter().map(without).map(|others| (rest(&others), others));
+        let Some((left, others)) = each.min_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+        let is_shown = count * (left * left - now * now) >= (SHOWN * noise).powi(2);
+        if left - now >= least && is_shown {
+            break;
+        }
+        (taken, now) = (others, left);
+    }
+    taken
+}
+
 /// What the linear model leaves of residuals, root of the mean square, when settings take away as much as they can; entries of `effects`
 /// as for [`most_effective`], directions as for [`LeastSquares::resolution`].
 ///
@@ -181,5 +214,18 @@ mod tests {
         // one takes 3 of the residuals, the other 1
         assert_eq!(most_effective(&[1.0, 3.0, 2.0, 5.0], &effects, &always, 1e-3, 0.8), [1]);
         assert_eq!(most_effective(&[0.0; 4], &effects, &[vec![0.0; 4]], 1e-3, 0.0), []);
+    }
+
+    /// The difference of two settings that are almost one takes all away, and neither of them anything; a third one does nothing for it.
+    #[test]
+    fn settings_that_do_nothing_alone_are_taken_together() {
+        let effects = [vec![1.0, 1.0, 0.0, 0.0], vec![1.0, 0.9, 0.0, 0.0], vec![0.0, 0.0, 1.0, 0.0]];
+        let residuals = [0.9, -1.0, 0.0, 0.0];
+        let alone = most_effective(&residuals, &effects, &[], 0.01, 0.0);
+        assert_eq!(alone, [], "the sum of both is square to what is left, and nearly so is either");
+        assert_eq!(least_dispensable(&residuals, (&effects, &[]), 1e-4, (0.01, 0.0)), [0, 1]);
+        assert!(linear_rest(&residuals, &effects[..2], 1e-4) < 1e-12);
+        // of noise as large nothing is taken
+        assert_eq!(least_dispensable(&residuals, (&effects, &[]), 1e-4, (0.01, 1.0)), []);
     }
 }

@@ -1,6 +1,7 @@
 //! Nonlinear least squares with bounds: Levenberg and Marquardt, each step from the singular values of the Jacobian.
 
 mod decomposed;
+pub(crate) mod outliers;
 mod thin;
 
 use std::rc::Rc;
@@ -455,33 +456,6 @@ impl LeastSquaresFit {
     #[must_use]
     pub fn rank(&self) -> usize {
         self.basis.ncols()
-    }
-
-    /// Of a residual the share that fitting takes of it, from 0 to 1.
-    ///
-    /// # Panics
-    /// If there is no such residual.
-    #[must_use]
-    pub fn leverage(&self, row: usize) -> f64 {
-        self.basis.row(row).iter().map(|x| x * x).sum()
-    }
-
-    /// What some residuals would be if the fit did not know of them, by the linear model: how well the others predict them. `None`
-    /// where the others do not determine that.
-    ///
-    /// # Panics
-    /// If there is no such residual.
-    #[must_use]
-    pub fn left_out(&self, rows: &[usize]) -> Option<Vec<f64>> {
-        // as (I - B Bt)^-1 r = r + B (I - Bt B)^-1 Bt r of the rows B of these: as large as the fit has directions, however many these are
-        let basis = nalgebra::DMatrix::from_fn(rows.len(), self.basis.ncols(), |i, k| self.basis[(rows[i], k)]);
-        let residuals = nalgebra::DVector::from_fn(rows.len(), |i, _| self.residuals[rows[i]]);
-        let own = nalgebra::DMatrix::identity(basis.ncols(), basis.ncols()) - basis.tr_mul(&basis);
-        // the smallest eigenvalue is the share of a combination of these that the others leave to it
-        let factors = own.cholesky()?;
-        let is_determined = factors.l_dirty().diagonal().iter().all(|x| x * x > OWN);
-        is_determined
-            .then(|| (&residuals + &basis * factors.solve(&basis.tr_mul(&residuals))).iter().copied().collect())
     }
 
     /// The variance of the residuals that the fit leaves; `None` where as many directions are used as there are residuals.
