@@ -184,6 +184,7 @@ fn steps_that_bend_alike_are_taken_together() {
     let last = fit.residuals[2];
     near(fit.values[0], 1.0 / (1.0 + 0.06 * last), 1e-12);
     near(fit.values[1], 2.0 / (1.0 + 0.002 * last), 1e-12);
+}
 
 /// Values at five places in seven series, of which each may have an offset: what all lie on is `a + b t`, beside a pattern of a hundredth.
 fn series(offset: impl Fn(usize, usize) -> f64) -> LinearModel {

@@ -375,7 +375,8 @@ impl LeastSquares {
         let changed: Vec<f64> = whole.by.iter().zip(&before.whole.by).map(|(now, before)| now - before).collect();
         let along = |of: &[f64]| changed.iter().zip(of).map(|(a, b)| a * b).sum::<f64>();
         let share = along(&whole.by) / along(&changed);
-        if !(share.abs() <= TOLD_AHEAD) {
+        // no number where the last two are the same
+        if share.is_nan() || share.abs() > TOLD_AHEAD {
             return None;
         }
         let of = |(k, unknown): (usize, &ScaledUnknown)| {
