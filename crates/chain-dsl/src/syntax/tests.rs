@@ -213,7 +213,7 @@ fn the_scanner_knows_the_words_of_the_grammar() {
             words::reserved(word).is_none() && grammar::strict(Rule::job_piece, &format!("let {word} = 3")).is_ok()
         );
     }
-    let rule = include_str!("grammar.pest").split("keyword        = @{").nth(1).and_then(|rest| rest.split('}').next());
+    let rule = include_str!("grammar.pest").split("keyword        = _{").nth(1).and_then(|rest| rest.split('}').next());
     for word in rule.unwrap().split('"').skip(1).step_by(2) {
         assert_eq!(words::reserved(word), Some(words::Reserved::Keyword), "{word}");
     }

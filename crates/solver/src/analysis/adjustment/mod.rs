@@ -33,8 +33,8 @@ pub struct FootSearch {
     settings: usize,
 }
 
-/// So few points take less time than other threads take to wake.
-const FEW: usize = 4 * LANES;
+/// So few points, a fifth of a millisecond, take less time than other threads take to wake.
+const FEW: usize = 40 * LANES;
 
 /// What one tile after the other is solved with.
 struct Evaluators<'s> {
