@@ -72,7 +72,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     if compilation.has_errors() {
         return Err(render(&compilation.diagnostics, &compilation.sources, false));
     }
-    let job = compilation.take_jobs(Some(&arguments.job)).map_err(|_| format!("no job `{}`", arguments.job))?.remove(0);
+    let job = compilation.take_jobs(&[&arguments.job]).map_err(|_| format!("no job `{}`", arguments.job))?.remove(0);
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().ok_or("the job asks for no points")?;
     let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];

@@ -54,7 +54,7 @@ fn findings(code: Code, block: &Block) -> (Vec<Diagnostic>, String) {
 /// The report; for the code about missing jobs, jobs are asked for as the command line does.
 fn report(compilation: &mut Compilation<'_>, code: Code) -> String {
     if code == Code::NoJob && !compilation.has_errors() {
-        let missing = compilation.take_jobs(None).err();
+        let missing = compilation.take_jobs(&[""; 0]).err();
         compilation.diagnostics.extend(missing.into_iter().flatten());
     }
     render(&compilation.diagnostics, &compilation.sources, false)

@@ -96,20 +96,18 @@ impl<'g> Compilation<'g> {
         self.diagnostics.iter().any(|diagnostic| diagnostic.severity() == Severity::Error)
     }
 
-    /// Takes the job of a name out, or all jobs if none is asked for.
+    /// Takes the jobs of these names out, or all jobs if none is asked for.
     ///
     /// # Errors
-    /// What is found if there is no such job, or no job at all, or values are given from outside that only jobs have which are not
+    /// What is found if there is none of these, or no job at all, or values are given from outside that only jobs have which are not
     /// asked for.
-    pub fn take_jobs(&mut self, wanted: Option<&str>) -> Result<Vec<Job<'g>>, Vec<Diagnostic>> {
-        let mut jobs = std::mem::take(&mut self.jobs);
-        let mut others = Vec::new();
-        if let Some(wanted) = wanted {
-            (jobs, others) = jobs.into_iter().partition(|job| job.name == wanted);
-        }
+    pub fn take_jobs(&mut self, wanted: &[impl AsRef<str>]) -> Result<Vec<Job<'g>>, Vec<Diagnostic>> {
+        let all = std::mem::take(&mut self.jobs);
+        let is_wanted = |job: &Job<'g>| wanted.is_empty() || wanted.iter().any(|name| name.as_ref() == job.name);
+        let (jobs, others): (Vec<Job<'g>>, Vec<Job<'g>>) = all.into_iter().partition(is_wanted);
         match &jobs[..] {
-            [] => Err(vec![self.no_job(wanted)]),
-            [job, ..] => match self.set_elsewhere(job, &others) {
+            [] => Err(vec![self.no_job(wanted.first().map(AsRef::as_ref))]),
+            _ => match self.set_elsewhere(&jobs, &others) {
                 findings if findings.is_empty() => Ok(jobs),
                 findings => Err(findings),
             },
@@ -117,12 +115,15 @@ impl<'g> Compilation<'g> {
     }
 
     /// What is said of values from outside that only jobs have which nobody asks for.
-    fn set_elsewhere(&self, job: &Job<'g>, others: &[Job<'g>]) -> Vec<Diagnostic> {
+    fn set_elsewhere(&self, jobs: &[Job<'g>], others: &[Job<'g>]) -> Vec<Diagnostic> {
         let findings = self.set.iter().filter_map(|name| {
-            let beside = [Some(job), self.machine.as_ref()];
-            let is_there = beside.into_iter().flatten().any(|job| job.has_parameter(&name.node));
+            let is_there = jobs.iter().chain(&self.machine).any(|job| job.has_parameter(&name.node));
             let owner = others.iter().find(|other| other.has_parameter(&name.node)).filter(|_| !is_there)?;
-            let message = format!("job `{}` has no parameter `{}`", job.name, name.node);
+            let names: Vec<String> = jobs.iter().map(|job| format!("`{}`", job.name)).collect();
+            let message = match &names[..] {
+                [one] => format!("job {one} has no parameter `{}`", name.node),
+                _ => format!("none of the jobs {} has a parameter `{}`", names.join(", "), name.node),
+            };
             let help = format!("job `{}` has one, and is not asked for", owner.name);
             Some(Diagnostic::new(Code::UnknownName, name.span, message).help(help))
         });

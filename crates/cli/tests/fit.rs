@@ -896,3 +896,25 @@ fn the_file_of_the_job_is_not_written_over() {
     assert!(told.contains("is what this command reads and would be written over") && !told.contains("E0"), "{told}");
     assert_eq!(std::fs::read_to_string(&spec).expect("kept"), before);
 }
+
+/// Of a file with several jobs those that the surfaces are named with are built: what is set in another one is told, and a name that is no
+/// job's with all there are.
+#[test]
+fn what_is_set_in_jobs_that_are_not_fitted_is_told() {
+    let spec = "specs/bevel/ease_off_19x62.chain";
+    let told = |surface: &str, more: &[&str]| {
+        let wish = "crowning: 50 um profilewise, 25 um lengthwise; slope: 0, 0; bias: 0";
+        let arguments =
+            ["fit", spec, surface, "--from", "conjugate.concave", "--ease-off", wish, "--vary", "radial_distance"];
+        let run = flank(&[&arguments[..], more].concat());
+        (run.status.code(), text(&run.stderr))
+    };
+    let (code, words) = told("basic.concave", &["--set", "pinion.m.radial_distance=99 mm"]);
+    assert!(code == Some(1) && words.contains("none of the jobs `basic`, `conjugate` has a parameter"), "{words}");
+    assert!(words.contains("job `pinion` has one, and is not asked for"), "{words}");
+    assert_eq!(told("basic.concave", &["--set", "m.radial_distance=97.9 mm"]).0, Some(3));
+    let (_, words) = told("bassic.concave", &[]);
+    assert!(words.contains("`pinion.concave`, `basic.concave`"), "{words}");
+    let (_, words) = told("concave", &[]);
+    assert!(words.contains("several jobs have a surface `concave`"), "{words}");
+}

@@ -353,7 +353,7 @@ fn jobs_are_taken_by_name() {
         let graph = Graph::new();
         let mut compilation = compile_file(&graph, &folder.join(file), &[]);
         assert!(!compilation.has_errors());
-        let jobs = compilation.take_jobs(wanted).map_err(|findings| {
+        let jobs = compilation.take_jobs(wanted.as_slice()).map_err(|findings| {
             let _ = render(&findings, &compilation.sources, false);
             let help = findings.iter().find_map(|finding| finding.help.clone()).unwrap_or_default();
             (findings.iter().map(|finding| finding.code).collect::<Vec<Code>>(), help)
@@ -403,7 +403,7 @@ fn a_value_from_outside_belongs_to_a_job_that_is_asked_for() {
         let graph = Graph::new();
         let mut compilation = compile_file(&graph, &folder.join("jobs/j.chain"), &set);
         assert!(!compilation.has_errors(), "{}", render(&compilation.diagnostics, &compilation.sources, false));
-        let jobs = compilation.take_jobs(wanted).map_err(|findings| {
+        let jobs = compilation.take_jobs(wanted.as_slice()).map_err(|findings| {
             let shown = render(&findings, &compilation.sources, false);
             (findings[0].code, shown)
         });

@@ -117,7 +117,7 @@ pub(crate) fn compiled<'g>(
     which.check()?;
     let request = Request { machine: Some(to), ..which.request() };
     let mut compilation = spec::sound(compile_request(graph, which.file(), &request), monitor)?;
-    let mut jobs = spec::asked_for(&mut compilation, which, monitor)?;
+    let mut jobs = spec::asked_for(&mut compilation, (which, which.job.as_slice()), monitor)?;
     let target = compilation.machine.take().expect("a compilation without errors has the machine");
     let origin = Origin::of_compilation(&compilation);
     match jobs.len() {

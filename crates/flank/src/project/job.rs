@@ -88,7 +88,7 @@ impl Project {
         if compilation.has_errors() {
             return Err(Failure::Findings(findings));
         }
-        let jobs = spec::asked_for(&mut compilation, &asked, &Unwatched)?;
+        let jobs = spec::asked_for(&mut compilation, (&asked, asked.job.as_slice()), &Unwatched)?;
         let texts = texts(&compilation);
         let files = texts.iter().fold(Buffers::over(self.shared_files()), |files, (file, text)| files.with(file, text));
         let project = Project::open(self.file(), Arc::new(files));

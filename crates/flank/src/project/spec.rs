@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, Files, GeneratedSurface, Job, Request, Sources, compile_request, read_other_file};
+use flank_chain_dsl::{Compilation, Files, GeneratedSurface, Job, Sources, compile_request, read_other_file};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -21,7 +21,10 @@ pub(crate) fn jobs<'g>(
     which: &JobSelection,
     monitor: &dyn Monitor,
 ) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
-    jobs_of(graph, which, which.request(), monitor)
+    which.check()?;
+    let mut compilation = sound(compile_request(graph, which.file(), &which.request()), monitor)?;
+    let jobs = asked_for(&mut compilation, (which, which.job.as_slice()), monitor)?;
+    Ok((compilation, jobs))
 }
 
 /// The jobs that are asked for, without those that none of these surfaces can be of: `basic.concave` is one of job `basic`.
@@ -39,18 +42,12 @@ pub(crate) fn jobs_of_surfaces<'g>(
     if request.jobs.is_empty() {
         request.jobs = named.unwrap_or_default();
     }
-    jobs_of(graph, which, request, monitor)
-}
-
-fn jobs_of<'g>(
-    graph: &'g Graph,
-    which: &JobSelection,
-    request: Request<'_>,
-    monitor: &dyn Monitor,
-) -> Result<(Compilation<'g>, Vec<Job<'g>>), Failure> {
     which.check()?;
+    let wanted = request.jobs.clone();
     let mut compilation = sound(compile_request(graph, which.file(), &request), monitor)?;
-    let jobs = asked_for(&mut compilation, which, monitor)?;
+    // a name without a job is told with all surfaces that there are
+    let are_there = wanted.iter().all(|name| compilation.jobs.iter().any(|job| job.name == *name));
+    let jobs = asked_for(&mut compilation, (which, if are_there { &wanted[..] } else { &[] }), monitor)?;
     Ok((compilation, jobs))
 }
 
@@ -70,16 +67,16 @@ pub(crate) fn sound<'g>(compilation: Compilation<'g>, monitor: &dyn Monitor) -> 
     Ok(compilation)
 }
 
-/// The jobs of a compilation that are asked for.
+/// The jobs of a compilation that are asked for: of these names, or all.
 ///
 /// # Errors
-/// Which there are, if there is none of that name, or none at all.
+/// Which there are, if there is none of these names, or none at all; what is set in others alone.
 pub(crate) fn asked_for<'g>(
     compilation: &mut Compilation<'g>,
-    which: &JobSelection,
+    (which, wanted): (&JobSelection, &[impl AsRef<str>]),
     monitor: &dyn Monitor,
 ) -> Result<Vec<Job<'g>>, Failure> {
-    let jobs = compilation.take_jobs(which.job.as_deref());
+    let jobs = compilation.take_jobs(wanted);
     let jobs = jobs.map_err(|findings| Failure::Findings(Findings::new(&findings, &compilation.sources)))?;
     set_in_several(which, &jobs).iter().for_each(|remark| monitor.remark(remark));
     Ok(jobs)

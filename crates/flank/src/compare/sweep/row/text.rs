@@ -49,7 +49,7 @@ pub(super) fn found<'i>(
     if compilation.has_errors() {
         return Err(Failure::Findings(Findings::new(&compilation.diagnostics, &compilation.sources)));
     }
-    let jobs = compilation.take_jobs(which.job.as_deref());
+    let jobs = compilation.take_jobs(which.job.as_slice());
     let jobs = jobs.map_err(|findings| Failure::Findings(Findings::new(&findings, &compilation.sources)))?;
     let origin = Origin::of_compilation(&compilation);
     // several of what is collected ask for the same samples
