@@ -1,6 +1,7 @@
 //! Parameters of machines and tools get their values.
 
 use std::collections::{HashMap, HashSet};
+use std::fmt;
 use std::rc::Rc;
 
 use flank_expr::Expr;
@@ -71,14 +72,23 @@ impl<'g> Given<'g> {
         match context.constant_kept(self.definition) {
             Constant::Unknown => Some(f64::NAN),
             Constant::Known(value) if value.is_finite() => Some(value),
-            _ => context.require_constant(self.definition, self.written, &shown_name(param)),
+            _ => context.require_constant(self.definition, self.written, shown_name(param)),
         }
     }
 }
 
 /// The short name: a default is looked at once by itself and once for each use, and both must say the same.
-fn shown_name(param: &Param) -> String {
-    format!("`{}`", param.name.node)
+fn shown_name(param: &Param) -> ShownName<'_> {
+    ShownName(&param.name.node)
+}
+
+#[derive(Clone, Copy)]
+struct ShownName<'a>(&'a str);
+
+impl fmt::Display for ShownName<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "`{}`", self.0)
+    }
 }
 
 /// Makes a variable for each `param`, puts it into the scope and gives the list of them.
@@ -136,7 +146,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         };
         let given = match self.given(context, param, &name, scope) {
             Some((expression, value, by)) => {
-                let definition = context.require(&value, dimension, expression.span, &shown_name(param))?;
+                let definition = context.require(&value, dimension, expression.span, shown_name(param))?;
                 Some(Given { definition, written: expression.span, by })
             }
             None if param.is_error => {
@@ -350,7 +360,7 @@ impl<'a, 'g> Binder<'a, 'g> {
             }
             return Ok(None);
         };
-        let Some((low, high)) = context.range(range, scope, dimension, &what) else { return Ok(None) };
+        let Some((low, high)) = context.range(range, scope, dimension, what) else { return Ok(None) };
         if value < low || value > high {
             let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));
             let message = format!("{what} is {value}, outside its range {low} .. {high}");

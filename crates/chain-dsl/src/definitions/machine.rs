@@ -179,7 +179,7 @@ fn defined(statement: &MachineStatement) -> Option<(&Name, &'static str)> {
 /// Reports what is defined twice; gives the number of laws among it.
 fn check_duplicates(context: &mut Context<'_>, machine: &ast::Machine) -> usize {
     let mut laws = 0;
-    let mut seen: HashMap<(&str, &str), Span> = HashMap::new();
+    let mut seen: HashMap<(&str, &str), Span> = HashMap::with_capacity(machine.statements.len());
     for (name, kind) in machine.statements.iter().filter_map(defined) {
         let Some(&first) = seen.get(&(kind, name.node.as_str())) else {
             seen.insert((kind, &name.node), name.span);
@@ -296,7 +296,7 @@ impl<'a> Flat<'a> {
         let user = source.user();
         let is_instance = matches!(source, Source::Instance { .. });
         let mut binder = Binder::new(source, overrides);
-        let mut scope = Scope::new();
+        let mut scope = Scope::with_capacity(self.constants.list.len() + self.axes.list.len());
         context.moving = self.axes.list.iter().map(|axis| axis.name.node.clone()).collect();
         // values that axes move come after the axes, whose travels may depend on the others
         let mut moving = Vec::new();

@@ -8,7 +8,7 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::model::RangedVariable;
 use crate::values::context::Context;
-use crate::values::steel_side::{Moving, Seen, SteelSide, looked};
+use crate::values::steel_side::{Moving, Seen, SteelSide, in_lanes, looked};
 
 /// Where a surface is written: its points, the side of its steel, the segment of a profile that it runs along.
 #[derive(Clone, Copy, Debug)]
@@ -86,7 +86,7 @@ fn look<'g>(context: &Context<'g>, parts: &[Expr<'g>; 6], unknowns: &[RangedVari
     let values: Vec<f64> = inputs.iter().map(|input| context.value_of(*input)).collect();
     let place = |unknown: &RangedVariable<'g>| inputs.iter().position(|input| *input == unknown.variable);
     let moving: Vec<Moving> = unknowns.iter().map(|of| (place(of), of.low, of.high)).collect();
-    looked(&tape, values, &moving)
+    looked(&in_lanes(&tape, &moving), &values, &moving)
 }
 
 /// Why a surface has no side that the steel lies on.

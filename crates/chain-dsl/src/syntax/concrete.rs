@@ -95,6 +95,7 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         | Rule::expected_value
         | Rule::expected_pose
         | Rule::label
+        | Rule::bound
         | Rule::coordinate => {
             return pair.into_inner().for_each(|inner| push(inner, parts));
         }
@@ -121,10 +122,15 @@ fn push<'t>(pair: Pair<'t, Rule>, parts: &mut Vec<Part<'t>>) {
         Rule::segment | Rule::requirement => Kind::Statement,
         Rule::expectation | Rule::machine_expectation => return parts.push(expectation(pair)),
         Rule::formal | Rule::parameter | Rule::surface_parameter | Rule::setting => Kind::Element,
-        Rule::argument | Rule::bound | Rule::keep | Rule::kept_axis | Rule::sampled | Rule::change => Kind::Element,
+        Rule::argument | Rule::keep | Rule::kept_axis | Rule::sampled | Rule::change => Kind::Element,
         Rule::arguments | Rule::settings | Rule::changes | Rule::vector => Kind::List,
         Rule::group | Rule::index => Kind::Group,
-        Rule::definition | Rule::variant_of | Rule::value | Rule::call | Rule::dimension_factor => Kind::Joined,
+        Rule::named if pair.clone().into_inner().all(|part| part.as_rule() != Rule::arguments) => {
+            return parts.push(Part::leaf(Kind::Token, &pair));
+        }
+        Rule::definition | Rule::variant_of | Rule::value | Rule::named | Rule::call | Rule::dimension_factor => {
+            Kind::Joined
+        }
         Rule::value_type | Rule::size => Kind::Joined,
         Rule::range => Kind::Operation,
         Rule::dimension => Kind::Dimension,

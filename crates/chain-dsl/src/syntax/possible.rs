@@ -100,6 +100,7 @@ fn is_named(rule: Rule) -> bool {
             | Rule::value
             | Rule::prefix
             | Rule::label
+            | Rule::named
             | Rule::call
             | Rule::definition
             | Rule::variant_of

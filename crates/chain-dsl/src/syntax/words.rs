@@ -148,9 +148,10 @@ mod tests {
 
     use super::*;
 
-    /// Words in quotes: those of the grammar.
+    /// Words in quotes: those of the grammar. Where it tells words by their first letters they are not whole.
     fn quoted(grammar: &str) -> BTreeSet<&str> {
         let lines = grammar.lines().map(|line| line.split("//").next().unwrap_or_default());
+        let lines = lines.filter(|line| !line.contains("'..'"));
         let texts = lines.flat_map(|line| line.split('"').skip(1).step_by(2));
         texts.filter(|text| text.chars().count() > 1 && text.chars().all(char::is_alphabetic)).collect()
     }

@@ -2,6 +2,7 @@
 
 use std::cell::{Cell, RefCell};
 use std::collections::{HashMap, HashSet};
+use std::fmt;
 use std::rc::Rc;
 
 use flank_expr::{Expr, Graph, Interval, IntervalEvaluator, Tape, VariableId};
@@ -398,7 +399,7 @@ impl<'g> Context<'g> {
     }
 
     /// The number behind a value that must be one; `None` (reported where it is the user's fault) if it is not.
-    pub(crate) fn require_constant(&mut self, expr: Expr<'g>, span: Span, what: &str) -> Option<f64> {
+    pub(crate) fn require_constant(&mut self, expr: Expr<'g>, span: Span, what: impl fmt::Display) -> Option<f64> {
         match self.constant(expr) {
             Constant::Known(value) if value.is_finite() => Some(value),
             Constant::Known(value) => {
@@ -415,7 +416,7 @@ impl<'g> Context<'g> {
     }
 
     /// Reports a value that is no number, or infinite.
-    pub(crate) fn not_finite(&mut self, value: f64, span: Span, what: &str) {
+    pub(crate) fn not_finite(&mut self, value: f64, span: Span, what: impl fmt::Display) {
         let (reason, help) = if value.is_nan() {
             ("cannot be computed", "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0")
         } else {
@@ -425,7 +426,13 @@ impl<'g> Context<'g> {
     }
 
     /// A scalar of the wanted dimension, or `None` with the reason reported.
-    pub(crate) fn require(&mut self, value: &Value<'g>, wanted: Dimension, span: Span, what: &str) -> Option<Expr<'g>> {
+    pub(crate) fn require(
+        &mut self,
+        value: &Value<'g>,
+        wanted: Dimension,
+        span: Span,
+        what: impl fmt::Display,
+    ) -> Option<Expr<'g>> {
         match value {
             Value::Poison => None,
             Value::Scalar(expr, dimension) if wanted.accepts(*dimension) => Some(*expr),

@@ -1,5 +1,8 @@
 //! Expressions of the text become symbolic scalars, their dimensions checked on the way.
 
+use std::borrow::Cow;
+use std::fmt;
+
 use flank_expr::{CurveId, Expr};
 
 use crate::diagnostics::Diagnostic;
@@ -56,7 +59,7 @@ impl<'g> Context<'g> {
         expression: &Expression,
         scope: &Scope<'g>,
         wanted: Dimension,
-        what: &str,
+        what: impl fmt::Display + Copy,
     ) -> Option<Expr<'g>> {
         let value = self.evaluate(expression, scope);
         self.require(&value, wanted, expression.span, what)
@@ -68,7 +71,7 @@ impl<'g> Context<'g> {
         expression: &Expression,
         scope: &Scope<'g>,
         wanted: Dimension,
-        what: &str,
+        what: impl fmt::Display + Copy,
     ) -> Option<[Expr<'g>; N]> {
         let value = self.evaluate(expression, scope);
         let parts = match &value {
@@ -83,7 +86,7 @@ impl<'g> Context<'g> {
         let written = expression.parts(N);
         let names = ["x", "y", "z"];
         let found: [Option<Expr<'g>>; N] = std::array::from_fn(|k| {
-            self.require(&parts[k], wanted, written[k].span, &format!("{} of {what}", names[k]))
+            self.require(&parts[k], wanted, written[k].span, format_args!("{} of {what}", names[k]))
         });
         found.into_iter().collect::<Option<Vec<_>>>()?.try_into().ok()
     }
@@ -94,7 +97,7 @@ impl<'g> Context<'g> {
         range: &Range,
         scope: &Scope<'g>,
         wanted: Dimension,
-        what: &str,
+        what: impl fmt::Display + Copy,
     ) -> Option<(f64, f64)> {
         self.ends(range, scope, wanted, what).map(|(values, _)| values)
     }
@@ -105,13 +108,14 @@ impl<'g> Context<'g> {
         range: &Range,
         scope: &Scope<'g>,
         wanted: Dimension,
-        what: &str,
+        what: impl fmt::Display + Copy,
     ) -> Option<((f64, f64), [Expr<'g>; 2])> {
-        let low = self.scalar(&range.low, scope, wanted, &format!("the lower end of {what}"));
-        let high = self.scalar(&range.high, scope, wanted, &format!("the upper end of {what}"));
-        let low_value = low.and_then(|low| self.require_constant(low, range.low.span, &format!("the range of {what}")));
+        let low = self.scalar(&range.low, scope, wanted, format_args!("the lower end of {what}"));
+        let high = self.scalar(&range.high, scope, wanted, format_args!("the upper end of {what}"));
+        let low_value =
+            low.and_then(|low| self.require_constant(low, range.low.span, format_args!("the range of {what}")));
         let high_value =
-            high.and_then(|high| self.require_constant(high, range.high.span, &format!("the range of {what}")));
+            high.and_then(|high| self.require_constant(high, range.high.span, format_args!("the range of {what}")));
         let (low_value, high_value) = (low_value?, high_value?);
         if low_value >= high_value {
             self.report_empty(range, [low_value, high_value], wanted, what);
@@ -121,7 +125,13 @@ impl<'g> Context<'g> {
     }
 
     /// Reports a range whose ends are one, or the wrong way round.
-    pub(crate) fn report_empty(&mut self, range: &Range, [low, high]: [f64; 2], of: Dimension, what: &str) {
+    pub(crate) fn report_empty(
+        &mut self,
+        range: &Range,
+        [low, high]: [f64; 2],
+        of: Dimension,
+        what: impl fmt::Display,
+    ) {
         let is_turned = low > high;
         let help = if is_turned { "put the smaller end first" } else { "give it two different ends" };
         let [low, high] = [low, high].map(|value| dimension::shown(value, of));
@@ -171,15 +181,18 @@ impl<'g> Context<'g> {
     }
 
     fn path(&mut self, path: &ast::Path, scope: &Scope<'g>) -> Value<'g> {
-        let joined = path.segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join(".");
-        if let Some(value) = scope.get(&joined) {
+        let joined = match &path.segments[..] {
+            [only] => Cow::Borrowed(only.node.as_str()),
+            segments => segments.iter().map(|segment| segment.node.as_str()).collect::<Vec<_>>().join(".").into(),
+        };
+        if let Some(value) = scope.get(&*joined) {
             // lists of lists of lists: what is copied is paid for
             return if self.spend(value.size(), path.span) { value.clone() } else { Value::Poison };
         }
         if joined == "pi" {
             return Value::Scalar(self.graph.constant(std::f64::consts::PI), Dimension::NUMBER);
         }
-        if self.moving.contains(&joined) {
+        if self.moving.contains(&*joined) {
             let message = format!("`{joined}` moves, and what is stated here must stand still");
             let help = format!(
                 "name `{joined}` where it moves something: in a transform of a frame, in `couple`, or in a `let`"
@@ -187,7 +200,7 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::NotConstant, path.span, message).help(help));
             return Value::Poison;
         }
-        let name = crate::diagnostics::source::Spanned { node: joined, span: path.span };
+        let name = crate::diagnostics::source::Spanned { node: joined.into_owned(), span: path.span };
         self.unknown_value(&name, scope.keys().map(String::as_str));
         Value::Poison
     }
@@ -462,8 +475,8 @@ impl<'g> Context<'g> {
         let mut inner = Scope::new();
         let mut own = Vec::new();
         for ((value, given), (name, written)) in arguments.into_iter().zip(&function.arguments) {
-            let what = format!("`{}` of `{}`", name.node, function.name.node);
-            let Some(value) = self.of_type(&value, written, given, &what) else {
+            let what = format_args!("`{}` of `{}`", name.node, function.name.node);
+            let Some(value) = self.of_type(&value, written, given, what) else {
                 return Value::Poison;
             };
             let value = match value {
@@ -489,8 +502,8 @@ impl<'g> Context<'g> {
         scope: &Scope<'g>,
     ) -> Value<'g> {
         let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
-        let what = format!("the argument of `{}`", call.function.node);
-        match self.require(&arguments[0].0, x, arguments[0].1.span, &what) {
+        let what = format_args!("the argument of `{}`", call.function.node);
+        match self.require(&arguments[0].0, x, arguments[0].1.span, what) {
             Some(at) => Value::Scalar(at.on_curve(curve, 0), y),
             None => Value::Poison,
         }
@@ -499,8 +512,8 @@ impl<'g> Context<'g> {
     /// The point of a profile in a surface along it.
     fn on_segment(&mut self, call: &ast::Call, segment: &Segment<'g>, scope: &Scope<'g>) -> Value<'g> {
         let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
-        let what = format!("the argument of `{}`", call.function.node);
-        match self.require(&arguments[0].0, Dimension::LENGTH, arguments[0].1.span, &what) {
+        let what = format_args!("the argument of `{}`", call.function.node);
+        match self.require(&arguments[0].0, Dimension::LENGTH, arguments[0].1.span, what) {
             Some(run) => Value::Vector(segment.point(run).map(|x| Value::Scalar(x, Dimension::LENGTH)).into()),
             None => Value::Poison,
         }
@@ -524,8 +537,8 @@ impl<'g> Context<'g> {
         let Some(promised) = &function.result else {
             return value;
         };
-        let what = format!("the value of `{}`", function.name.node);
-        self.of_type(&value, promised, &function.body, &what).unwrap_or(Value::Poison)
+        let what = format_args!("the value of `{}`", function.name.node);
+        self.of_type(&value, promised, &function.body, what).unwrap_or(Value::Poison)
     }
 
     /// A value of a type, which may be better known by it than by itself: an angle where a number is wanted.
@@ -534,7 +547,7 @@ impl<'g> Context<'g> {
         value: &Value<'g>,
         wanted: &ast::Type,
         written: &Expression,
-        what: &str,
+        what: impl fmt::Display + Copy,
     ) -> Option<Value<'g>> {
         let dimension = self.dimension(&wanted.dimension)?;
         let Some(size) = wanted.size else {
@@ -545,7 +558,7 @@ impl<'g> Context<'g> {
             Value::Vector(parts) if parts.len() == size => {
                 let mut found = Vec::new();
                 for (k, (part, written)) in parts.iter().zip(written.parts(size)).enumerate() {
-                    let part = self.require(part, dimension, written.span, &format!("element {k} of {what}"))?;
+                    let part = self.require(part, dimension, written.span, format_args!("element {k} of {what}"))?;
                     found.push(Value::Scalar(part, dimension));
                 }
                 Some(Value::Vector(found))

@@ -1,5 +1,7 @@
 //! The functions that the language brings along.
 
+use std::fmt;
+
 use flank_expr::geometry::Vector3;
 use flank_expr::{Binary, Expr, Unary};
 
@@ -129,29 +131,29 @@ fn apply<'g>(
     arguments: &[Argument<'_, 'g>],
 ) -> Option<Value<'g>> {
     use Dimension as D;
-    let what = format!("the argument of `{name}`");
-    let one = |context: &mut Context<'g>, wanted| context.require(&arguments[0].0, wanted, arguments[0].1.span, &what);
+    let what = format_args!("the argument of `{name}`");
+    let one = |context: &mut Context<'g>, wanted| context.require(&arguments[0].0, wanted, arguments[0].1.span, what);
     Some(match function {
         Function::OfAngle(op) => Value::Scalar(one(context, D::ANGLE)?.unary(op), D::NUMBER),
-        Function::ToAngle(op) => Value::Scalar(as_number(context, &arguments[0], &what)?.unary(op), D::ANGLE),
-        Function::OfNumber(op) => Value::Scalar(as_number(context, &arguments[0], &what)?.unary(op), D::NUMBER),
+        Function::ToAngle(op) => Value::Scalar(as_number(context, &arguments[0], what)?.unary(op), D::ANGLE),
+        Function::OfNumber(op) => Value::Scalar(as_number(context, &arguments[0], what)?.unary(op), D::NUMBER),
         Function::Involute => {
             let angle = one(context, D::ANGLE)?;
             Value::Scalar(angle.tan() - angle, D::ANGLE)
         }
         Function::ArcInvolute => {
-            let (involute, dimension) = any_scalar(context, &arguments[0], &what)?;
+            let (involute, dimension) = any_scalar(context, &arguments[0], what)?;
             if dimension.length != 0 {
                 one(context, D::ANGLE)?;
             }
             Value::Scalar(involute.unary(Unary::Arcinv), D::ANGLE)
         }
         Function::Abs => {
-            let (x, dimension) = any_scalar(context, &arguments[0], &what)?;
+            let (x, dimension) = any_scalar(context, &arguments[0], what)?;
             Value::Scalar(x.abs(), dimension)
         }
         Function::Sqrt => {
-            let (x, dimension) = any_scalar(context, &arguments[0], &what)?;
+            let (x, dimension) = any_scalar(context, &arguments[0], what)?;
             let Some(root) = dimension.root().or((dimension.length == 0).then_some(D::NUMBER)) else {
                 let message = format!("there is no square root of a {dimension}");
                 context.report(Diagnostic::new(Code::WrongDimension, arguments[0].1.span, message));
@@ -183,14 +185,18 @@ fn apply<'g>(
 }
 
 /// A number; an angle is one where a function wants a number.
-fn as_number<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, what: &str) -> Option<Expr<'g>> {
+fn as_number<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, what: impl fmt::Display) -> Option<Expr<'g>> {
     match argument.0 {
         Value::Scalar(expr, dimension) if dimension.length == 0 => Some(expr),
         _ => context.require(&argument.0, Dimension::NUMBER, argument.1.span, what),
     }
 }
 
-fn any_scalar<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, what: &str) -> Option<(Expr<'g>, Dimension)> {
+fn any_scalar<'g>(
+    context: &mut Context<'g>,
+    argument: &Argument<'_, 'g>,
+    what: impl fmt::Display,
+) -> Option<(Expr<'g>, Dimension)> {
     match &argument.0 {
         Value::Scalar(expr, dimension) => Some((*expr, *dimension)),
         Value::Poison => None,
@@ -208,9 +214,9 @@ fn alike<'g>(
     name: &str,
     arguments: &[Argument<'_, 'g>],
 ) -> Option<(Expr<'g>, Expr<'g>, Dimension)> {
-    let what = format!("the argument of `{name}`");
-    let (a, da) = any_scalar(context, &arguments[0], &what)?;
-    let (b, db) = any_scalar(context, &arguments[1], &what)?;
+    let what = format_args!("the argument of `{name}`");
+    let (a, da) = any_scalar(context, &arguments[0], what)?;
+    let (b, db) = any_scalar(context, &arguments[1], what)?;
     let Some(dimension) = da.sum(db) else {
         let message = format!("`{name}` takes two values of one dimension, not {da} and {db}");
         context.report(Diagnostic::new(Code::WrongDimension, arguments[1].1.span, message));
@@ -226,7 +232,7 @@ fn polynomial<'g>(
     name: &str,
     factorials: bool,
 ) -> Option<Value<'g>> {
-    let (x, x_dimension) = any_scalar(context, &arguments[0], &format!("the variable of `{name}`"))?;
+    let (x, x_dimension) = any_scalar(context, &arguments[0], format_args!("the variable of `{name}`"))?;
     let Value::Vector(coefficients) = &arguments[1].0 else {
         let message = format!("`{name}` takes a list of coefficients `[c0, c1, …]`");
         context.report(Diagnostic::new(Code::WrongArguments, arguments[1].1.span, message));
@@ -235,8 +241,8 @@ fn polynomial<'g>(
     let mut dimension: Option<Dimension> = None;
     let mut terms = Vec::new();
     for ((k, coefficient), written) in (0i32..).zip(coefficients).zip(arguments[1].1.parts(coefficients.len())) {
-        let what = format!("coefficient {k} of `{name}`");
-        let (c, c_dimension) = any_scalar(context, &(coefficient.clone(), written), &what)?;
+        let what = format_args!("coefficient {k} of `{name}`");
+        let (c, c_dimension) = any_scalar(context, &(coefficient.clone(), written), what)?;
         let term = c_dimension.times(x_dimension.power(k));
         dimension = match dimension {
             // nothing of any dimension
@@ -262,7 +268,7 @@ fn polynomial<'g>(
 }
 
 fn vector<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, name: &str) -> Option<(Vector3<'g>, Dimension)> {
-    let what = format!("the argument of `{name}`");
+    let what = format_args!("the argument of `{name}`");
     let parts = match &argument.0 {
         Value::Vector(parts) if parts.len() == 3 => parts,
         Value::Poison => return None,
@@ -275,7 +281,7 @@ fn vector<'g>(context: &mut Context<'g>, argument: &Argument<'_, 'g>, name: &str
     let mut components = Vec::new();
     let mut dimension: Option<Dimension> = None;
     for (part, written) in parts.iter().zip(argument.1.parts(3)) {
-        let (expr, found) = any_scalar(context, &(part.clone(), written), &what)?;
+        let (expr, found) = any_scalar(context, &(part.clone(), written), what)?;
         let Some(sum) = dimension.unwrap_or(found).sum(found) else {
             let message = format!("the components of {what} have different dimensions");
             context.report(Diagnostic::new(Code::WrongDimension, written.span, message));

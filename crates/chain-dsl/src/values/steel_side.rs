@@ -1,6 +1,6 @@
 //! What is seen of the side on which the steel of a surface lies.
 
-use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_expr::{Expr, InstructionSet, LANES, LaneEvaluator, LaneTape, Tape, Varies};
 
 /// Points at which the side of the steel is looked at: a part that is a twenty-fifth of the surface has some of them.
 const LOOKS: usize = 100;
@@ -22,7 +22,7 @@ pub struct SteelSide<'g> {
 /// The same while settings are open.
 #[derive(Debug)]
 pub struct OpenSide {
-    tape: Tape,
+    tape: LaneTape,
     /// Unknowns stand behind the settings.
     moving: Vec<Moving>,
     is_flipped: bool,
@@ -41,16 +41,15 @@ impl<'g> SteelSide<'g> {
             open.iter().copied().chain(self.unknowns.iter().map(|(variable, ..)| *variable)).collect();
         let tape = Tape::new(&parts, &inputs).expect("a job without errors leaves nothing unbound");
         let moving = self.unknowns.iter().enumerate().map(|(k, (_, low, high))| (Some(open.len() + k), *low, *high));
-        Some(OpenSide { tape, moving: moving.collect(), is_flipped: self.is_flipped })
+        let moving: Vec<Moving> = moving.collect();
+        Some(OpenSide { tape: in_lanes(&tape, &moving), moving, is_flipped: self.is_flipped })
     }
 }
 
 impl OpenSide {
     /// Whether the steel lies on the same side all over the surface with these values of the settings.
     pub fn is_kept(&self, settings: &[f64]) -> bool {
-        let mut values = settings.to_vec();
-        values.resize(settings.len() + self.moving.len(), 0.0);
-        looked(&self.tape, values, &self.moving).one_side() == Some(self.is_flipped)
+        looked(&self.tape, settings, &self.moving).one_side() == Some(self.is_flipped)
     }
 }
 
@@ -77,22 +76,36 @@ pub(crate) struct Seen {
 /// The place of an unknown among the inputs of a tape, if it stands there, and its range.
 pub(crate) type Moving = (Option<usize>, f64, f64);
 
-/// Looks all over a surface: of the parts of [`SteelSide`], with values of what stands still.
-pub(crate) fn looked(tape: &Tape, mut values: Vec<f64>, moving: &[Moving]) -> Seen {
-    let mut evaluator = ScalarEvaluator::new(tape);
+/// A tape of the parts of [`SteelSide`] for many points of a surface at once.
+pub(crate) fn in_lanes(tape: &Tape, moving: &[Moving]) -> LaneTape {
+    let mut varies = vec![Varies::Seldom; tape.input_count()];
+    moving.iter().filter_map(|(place, ..)| *place).for_each(|place| varies[place] = Varies::Freely);
+    LaneTape::with_inputs(tape, &varies)
+}
+
+/// Looks all over a surface by the tape of [`in_lanes`]. `values` are those of its inputs; what moves needs none.
+pub(crate) fn looked(tape: &LaneTape, values: &[f64], moving: &[Moving]) -> Seen {
+    let mut evaluator = LaneEvaluator::new(tape, InstructionSet::widest());
+    let moves = |input: usize| moving.iter().any(|(place, ..)| *place == Some(input));
+    for (input, value) in values.iter().enumerate().filter(|(input, _)| !moves(*input)) {
+        evaluator.set_uniform(input, *value);
+    }
     let steps = steps(moving.len());
     let mut seen = Seen::default();
-    for look in 0..LOOKS {
+    for first in (0..LOOKS).step_by(LANES) {
+        let count = LANES.min(LOOKS - first);
         for ((place, low, high), step) in moving.iter().zip(&steps) {
-            let share = (0.5 + look as f64 * step).fract();
-            if let Some(place) = place {
-                values[*place] = low + (high - low) * share;
+            let Some(place) = place else { continue };
+            for (lane, value) in evaluator.input(*place)[..count].iter_mut().enumerate() {
+                *value = low + (high - low) * (0.5 + (first + lane) as f64 * step).fract();
             }
         }
-        let mut found = [0.0; 6];
-        evaluator.run(&values, &mut found);
-        seen.add(&found[..3], &found[3..]);
-        seen.looks += 1;
+        evaluator.run_first(count);
+        for lane in 0..count {
+            let found: [f64; 6] = std::array::from_fn(|part| evaluator.output(part)[lane]);
+            seen.add(&found[..3], &found[3..]);
+            seen.looks += 1;
+        }
     }
     seen
 }

@@ -91,12 +91,12 @@ impl Node {
 
     /// The nodes it is made of.
     pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
-        let (a, b) = match self {
-            Node::Constant(_) | Node::Variable(_) => (None, None),
-            Node::Unary(_, a) | Node::Curve(_, _, a) | Node::Middle(a) => (Some(a), None),
-            Node::Binary(_, a, b) | Node::Root(_, a, b) | Node::Integral(_, a, b) => (Some(a), Some(b)),
+        let (operands, count) = match self {
+            Node::Constant(_) | Node::Variable(_) => ([NodeId(0); 2], 0),
+            Node::Unary(_, a) | Node::Curve(_, _, a) | Node::Middle(a) => ([a; 2], 1),
+            Node::Binary(_, a, b) | Node::Root(_, a, b) | Node::Integral(_, a, b) => ([a, b], 2),
         };
-        a.into_iter().chain(b)
+        operands.into_iter().take(count)
     }
 }
 
@@ -108,6 +108,8 @@ pub(super) struct Store {
     curves: Vec<Arc<Curve>>,
     pub(super) implicits: Vec<Arc<Implicit>>,
     pub(super) integrals: Vec<Arc<Integral>>,
+    /// Whether one of the nodes is a middle.
+    pub(super) has_middles: bool,
     /// Operations asked for so far, new or not.
     operations: usize,
     room: Option<usize>,
@@ -161,7 +163,15 @@ impl fmt::Debug for Graph {
 impl Graph {
     /// An empty graph.
     pub fn new() -> Graph {
-        Graph::default()
+        /// Nodes of a short text: tables that grow node by node are hashed anew several times.
+        const ROOM: usize = 7168;
+        let graph = Graph::default();
+        let mut store = graph.store.borrow_mut();
+        store.nodes.reserve(ROOM);
+        store.index.reserve(ROOM);
+        store.derivatives.reserve(ROOM);
+        drop(store);
+        graph
     }
 
     /// Number of nodes made so far.
@@ -284,6 +294,7 @@ impl Graph {
         let id = *store.index.entry(node).or_insert(next);
         if id == next {
             store.nodes.push(node);
+            store.has_middles |= matches!(node, Node::Middle(_));
         }
         drop(guard);
         self.expr(id)

@@ -129,17 +129,18 @@ impl<'g> Sum<'g> {
 
     /// The places of two terms c·x·sin²a and c·x·cos²a, and x.
     fn squares_of_one_angle(&self) -> Option<([usize; 2], Monomial)> {
+        let mut partner = Vec::new();
         for (sine, (monomial, coefficient)) in self.terms.iter().enumerate() {
             for &(factor, power) in monomial.0.iter().filter(|(_, power)| *power >= 2) {
                 let Node::Unary(Unary::Sin, angle) = self.graph.node(factor) else { continue };
-                let mut rest = monomial.clone();
-                rest.set(factor, power - 2);
-                let mut partner = rest.clone();
                 let cosine = self.graph.expr(angle).cos().id;
-                partner.set(cosine, partner.power(cosine) + 2);
+                partner.clear();
+                partner.extend_from_slice(&monomial.0);
+                set(&mut partner, factor, power - 2);
+                set(&mut partner, cosine, monomial.power(cosine) + 2);
                 let Ok(cosine) = place(&self.terms, &partner) else { continue };
                 if coefficient.plus(self.terms[cosine].1.times(-1.0)).is_rounding() {
-                    return Some(([sine, cosine], rest));
+                    return Some(([sine, cosine], monomial.with(factor, power - 2)));
                 }
             }
         }
@@ -199,9 +200,7 @@ impl<'g> Sum<'g> {
                 (0, 1) => (&mut b, sine),
                 _ => return None,
             };
-            let mut rest = monomial.clone();
-            rest.set(wave, 0);
-            add(&mut part.terms, rest, *coefficient);
+            add(&mut part.terms, monomial.with(wave, 0), *coefficient);
         }
         Some((a, b))
     }
@@ -209,7 +208,7 @@ impl<'g> Sum<'g> {
     /// Divided by something that every term has as a factor.
     pub(crate) fn without(mut self, factor: &Monomial) -> Sum<'g> {
         for (monomial, _) in &mut self.terms {
-            factor.0.iter().for_each(|&(node, power)| monomial.set(node, monomial.power(node) - power));
+            factor.0.iter().for_each(|&(node, power)| *monomial = monomial.with(node, monomial.power(node) - power));
         }
         self.terms.sort_unstable_by(|(a, _), (b, _)| a.cmp(b));
         self
@@ -236,25 +235,17 @@ impl Monomial {
         self.0.iter().find(|(own, _)| *own == factor).map_or(0, |(_, power)| *power)
     }
 
-    fn set(&mut self, factor: NodeId, power: u32) {
+    /// The same with another power of one factor.
+    fn with(&self, factor: NodeId, power: u32) -> Monomial {
         let mut factors = self.0.to_vec();
-        match factors.binary_search_by_key(&factor, |(own, _)| *own) {
-            Ok(at) if power == 0 => {
-                factors.remove(at);
-            }
-            Ok(at) => factors[at].1 = power,
-            Err(_) if power == 0 => return,
-            Err(at) => factors.insert(at, (factor, power)),
-        }
-        self.0 = factors.into();
+        set(&mut factors, factor, power);
+        Monomial(factors.into())
     }
 
-    fn times(&self, other: &Monomial) -> Monomial {
-        if self.0.is_empty() || other.0.is_empty() {
-            return if self.0.is_empty() { other.clone() } else { self.clone() };
-        }
+    /// Puts the product with another one into `product`.
+    fn times(&self, other: &Monomial, product: &mut Vec<(NodeId, u32)>) {
         let (mut a, mut b) = (&self.0[..], &other.0[..]);
-        let mut product = Vec::with_capacity(a.len() + b.len());
+        product.clear();
         while let ([(left, power), a_rest @ ..], [(right, other), b_rest @ ..]) = (a, b) {
             (a, b) = match left.cmp(right) {
                 Ordering::Less => (a_rest, b),
@@ -269,7 +260,18 @@ impl Monomial {
         }
         product.extend_from_slice(a);
         product.extend_from_slice(b);
-        Monomial(product.into())
+    }
+}
+
+/// Gives one factor among others, which are in the order of the nodes, its power.
+fn set(factors: &mut Vec<(NodeId, u32)>, factor: NodeId, power: u32) {
+    match factors.binary_search_by_key(&factor, |(own, _)| *own) {
+        Ok(at) if power == 0 => {
+            factors.remove(at);
+        }
+        Ok(at) => factors[at].1 = power,
+        Err(_) if power == 0 => {}
+        Err(at) => factors.insert(at, (factor, power)),
     }
 }
 
@@ -277,10 +279,16 @@ fn multiplied(a: &Terms, b: &Terms) -> Option<Terms> {
     if a.len() * b.len() > MOST_TERMS {
         return None;
     }
-    let mut out = Terms::new();
+    let mut out = Terms::with_capacity(a.len() * b.len());
+    let mut product = Vec::new();
     for (left, c) in a {
         for (right, d) in b {
-            add(&mut out, left.times(right), Coefficient { value: c.value * d.value, size: c.size * d.size });
+            left.times(right, &mut product);
+            let coefficient = Coefficient { value: c.value * d.value, size: c.size * d.size };
+            match place(&out, &product) {
+                Ok(at) => out[at].1 = out[at].1.plus(coefficient),
+                Err(at) => out.insert(at, (Monomial(Rc::from(&product[..])), coefficient)),
+            }
         }
     }
     Some(out)
@@ -309,12 +317,12 @@ fn added(a: &[(Monomial, Coefficient)], factor: f64, b: &[(Monomial, Coefficient
 }
 
 /// Where a monomial is, or belongs.
-fn place(terms: &Terms, monomial: &Monomial) -> Result<usize, usize> {
-    terms.binary_search_by(|(own, _)| own.cmp(monomial))
+fn place(terms: &Terms, monomial: &[(NodeId, u32)]) -> Result<usize, usize> {
+    terms.binary_search_by(|(own, _)| own.0[..].cmp(monomial))
 }
 
 fn add(terms: &mut Terms, monomial: Monomial, coefficient: Coefficient) {
-    match place(terms, &monomial) {
+    match place(terms, &monomial.0) {
         Ok(at) => terms[at].1 = terms[at].1.plus(coefficient),
         Err(at) => terms.insert(at, (monomial, coefficient)),
     }

@@ -109,7 +109,7 @@ impl Graph {
         let (store, mut pending) = (self.store.borrow(), self.pending.borrow_mut());
         pending.begin(store.nodes.len());
         roots.into_iter().for_each(|root| pending.insert(root));
-        let mut found = Vec::new();
+        let mut found = Vec::with_capacity(64);
         while let Some(id) = pending.pop() {
             if !is_wanted(id) {
                 continue;
@@ -141,6 +141,9 @@ impl Graph {
 
     /// The same numbers without what only enclosures need: a middle is what it is the middle of, and parts that are equal then are one.
     pub(crate) fn without_middles<'g>(&'g self, roots: &[Expr<'g>]) -> Vec<Expr<'g>> {
+        if !self.store.borrow().has_middles {
+            return roots.to_vec();
+        }
         let Order { nodes, roots: places } = self.order(roots);
         if !nodes.iter().any(|placed| matches!(placed.node, Node::Middle(_))) {
             return roots.to_vec();

@@ -141,10 +141,12 @@ impl Tape {
         {
             graph.assert_owns(expr);
         }
-        let roots = definitions.iter().map(|(_, value)| vec![value.id]);
-        let roots = roots.chain([outputs.iter().map(|output| output.id).collect()]);
-        let mut order: Vec<NodeId> = roots.flat_map(|roots| graph.reachable(roots)).collect();
+        let mut order: Vec<NodeId> = graph.reachable(outputs.iter().map(|output| output.id));
         if !definitions.is_empty() {
+            let mut defined: Vec<NodeId> =
+                definitions.iter().flat_map(|(_, value)| graph.reachable([value.id])).collect();
+            defined.append(&mut order);
+            order = defined;
             let mut seen = vec![false; graph.len()];
             order.retain(|id| !std::mem::replace(&mut seen[id.0 as usize], true));
         }
@@ -164,7 +166,9 @@ impl Tape {
         registers.next = (tape.input_count + tape.constants.len()) as u32;
         tape.instructions.reserve(nodes.len());
         for place in 0..nodes.len() {
-            tape.instructions.extend(registers.step(place));
+            if let Some(instruction) = registers.step(place) {
+                tape.instructions.push(instruction);
+            }
         }
         tape.curves = registers.curves.iter().map(|&id| graph.curve_of(id)).collect();
         tape.outputs = outputs.iter().map(|output| registers.register_of(registers.meant[*output])).collect();

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 use std::ops;
 
-use flank_expr::{LANES, ScalarEvaluator, Tape};
+use flank_expr::{InstructionSet, LANES, LaneEvaluator, LaneTape};
 
 use crate::continuation::field::Field;
 use crate::continuation::grid::{Followed, Grid};
@@ -14,7 +14,7 @@ use crate::newton::scalar::solve_with;
 use crate::newton::solvers::Solvers;
 
 /// Where functions are looked at to see whether a turn changes them.
-const PROBES: u32 = 8;
+const PROBES: usize = 8;
 /// Changes below this share of a function, or of a millimetre, are rounding.
 const UNCHANGED: f64 = 1e-10;
 
@@ -118,44 +118,31 @@ pub(crate) fn is_within(unknowns: &[f64], ranges: &[Range]) -> bool {
     verdict(unknowns, ranges, true, false) == Outcome::Solved
 }
 
-/// The inputs of functions that change none of them by a turn: those among the first ones, which have ranges; the others are zero.
-pub(crate) fn periodic_in(tapes: &[&Tape], ranges: &[Range]) -> Vec<bool> {
-    let mut functions: Vec<_> = tapes.iter().map(|tape| (ScalarEvaluator::new(tape), tape)).collect();
-    let mut values = |inputs: &[f64]| -> Vec<f64> {
-        let of = |(evaluator, tape): &mut (ScalarEvaluator<'_>, &&Tape)| {
-            let mut out = vec![0.0; tape.output_count()];
-            evaluator.run(&inputs[..tape.input_count()], &mut out);
-            out
-        };
-        functions.iter_mut().flat_map(of).collect()
-    };
-    let most = tapes.iter().map(|tape| tape.input_count()).max().unwrap_or(0);
-    // what the functions are at each place, as far as it was asked for
-    let mut known_here: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
-    let is_periodic = |k: usize| {
-        let mut known = 0;
-        for number in 1..=PROBES {
-            let place = number as usize - 1;
-            if known_here.len() == place {
-                let mut inputs = probe(ranges, number);
-                inputs.resize(most, 0.0);
-                let here = values(&inputs);
-                known_here.push((inputs, here));
+/// The unknowns that, turned once, change none of the first `count` outputs of a tape: those among its first inputs, which have ranges; the
+/// others are zero.
+pub(crate) fn periodic_in(tape: &LaneTape, count: usize, ranges: &[Range]) -> Vec<bool> {
+    let mut evaluator = LaneEvaluator::new(tape, InstructionSet::widest());
+    let places: Vec<Vec<f64>> = (1..=PROBES).map(|number| probe(ranges, number as u32)).collect();
+    let (mut is_known, mut is_same) = (vec![false; ranges.len()], vec![true; ranges.len()]);
+    // the places as they are, then with one unknown turned, then with the next one
+    let all: Vec<usize> = (0..ranges.len()).collect();
+    for turned in all.chunks(LANES / PROBES - 1) {
+        for (input, _) in ranges.iter().enumerate() {
+            for (lane, value) in evaluator.input(input)[..(1 + turned.len()) * PROBES].iter_mut().enumerate() {
+                let is_turned = lane >= PROBES && turned[lane / PROBES - 1] == input;
+                *value = places[lane % PROBES][input] + if is_turned { TAU } else { 0.0 };
             }
-            let (inputs, here) = &mut known_here[place];
-            let stays = inputs[k];
-            inputs[k] += TAU;
-            let there = values(inputs);
-            inputs[k] = stays;
-            for (a, b) in here.iter().zip(&there).filter(|(a, b)| a.is_finite() || b.is_finite()) {
-                known += 1;
-                let is_same = (a - b).abs() <= UNCHANGED * a.abs().max(1.0);
-                if !is_same {
-                    return false;
+        }
+        evaluator.run_first((1 + turned.len()) * PROBES);
+        for output in 0..count {
+            let (here, there) = evaluator.output(output).split_at(PROBES);
+            for (unknown, there) in turned.iter().zip(there.chunks(PROBES)) {
+                for (a, b) in here.iter().zip(there).filter(|(a, b)| a.is_finite() || b.is_finite()) {
+                    is_known[*unknown] = true;
+                    is_same[*unknown] &= (a - b).abs() <= UNCHANGED * a.abs().max(1.0);
                 }
             }
         }
-        known > 0
-    };
-    (0..ranges.len()).map(is_periodic).collect()
+    }
+    is_known.into_iter().zip(is_same).map(|(is_known, is_same)| is_known && is_same).collect()
 }

@@ -14,20 +14,24 @@ pub(crate) struct Given<'g> {
 /// The unknowns that equations give, in the order in which they follow from each other.
 pub(crate) fn given_unknowns<'g>(residuals: &[Expr<'g>], unknowns: &[Expr<'g>]) -> Vec<Given<'g>> {
     let mut found: Vec<Given<'g>> = Vec::new();
-    let mut equations = residuals.to_vec();
+    let mut equations: Vec<(Expr<'g>, Vec<VariableId>)> =
+        residuals.iter().map(|residual| (*residual, residual.graph().variables_of(&[*residual]))).collect();
     loop {
         let is_given = |k: usize| found.iter().any(|given| given.unknown == k);
         let open: Vec<usize> = (0..unknowns.len()).filter(|k| !is_given(*k)).collect();
-        let next = equations.iter().enumerate().find_map(|(k, equation)| Some((k, by(*equation, unknowns, &open)?)));
+        let next = equations.iter().enumerate().find_map(|(k, equation)| Some((k, by(equation, unknowns, &open)?)));
         let Some((equation, given)) = next else { return found };
         equations.remove(equation);
         found.push(given);
     }
 }
 
-/// The unknown that an equation gives: the only open one in it.
-fn by<'g>(equation: Expr<'g>, unknowns: &[Expr<'g>], open: &[usize]) -> Option<Given<'g>> {
-    let variables: Vec<VariableId> = equation.graph().variables_of(&[equation]);
+/// The unknown that an equation with these variables gives: the only open one in it.
+fn by<'g>(
+    (equation, variables): &(Expr<'g>, Vec<VariableId>),
+    unknowns: &[Expr<'g>],
+    open: &[usize],
+) -> Option<Given<'g>> {
     let is_needed = |k: &usize| unknowns[*k].as_variable().is_some_and(|variable| variables.contains(&variable));
     let mut needed = open.iter().copied().filter(is_needed);
     let (unknown, None) = (needed.next()?, needed.next()) else { return None };

@@ -26,11 +26,7 @@ impl<'t> Runner<'t> {
 
     pub(crate) fn run(&mut self, inputs: &[f64], outputs: &mut [f64]) {
         match self {
-            Runner::MachineCode(lanes) => {
-                inputs.iter().enumerate().for_each(|(k, value)| lanes.input(k)[0] = *value);
-                lanes.run_first(1);
-                outputs.iter_mut().enumerate().for_each(|(k, value)| *value = lanes.output(k)[0]);
-            }
+            Runner::MachineCode(lanes) => lanes.run_at(inputs, outputs),
             Runner::Scalar(evaluator) => evaluator.run(inputs, outputs),
         }
     }

@@ -86,17 +86,18 @@ impl GivenTapes {
             return Ok(None);
         }
         let has_all = given.len() == unknowns.len();
-        let linear = Linear::new(wanted.residuals, unknowns);
-        let determinant = has_all.then(|| linear.scaled_determinant());
+        let widths = widths(unknowns);
+        let linear = has_all.then(|| Linear::with_widths(wanted.residuals, unknowns, widths.clone()));
+        let determinant = linear.as_ref().map(Linear::scaled_determinant);
         let found = given.iter().map(|given| unknowns[given.unknown]);
         let outputs: Vec<Expr<'g>> = wanted.all().into_iter().chain(found).chain(determinant).collect();
-        let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(&linear.widths).copied().collect();
+        let inputs: Vec<Expr<'g>> = unknowns.iter().chain(parameters).chain(&widths).copied().collect();
         let definitions: Vec<_> = given.iter().map(|given| (unknowns[given.unknown], given.form)).collect();
         let tape = Tape::of_numbers(&outputs, &inputs, &definitions)?;
         let checked = LaneTape::with_inputs(&tape, &freely(unknowns.len(), parameters.len()));
-        let is_on_lines = has_all && parameters.len() == 2;
-        let on_lines = || lines::laid_out(wanted, &given, &linear, [unknowns, parameters]);
-        let on_lines = is_on_lines.then(on_lines).transpose()?;
+        let on_lines = linear.as_ref().filter(|_| parameters.len() == 2);
+        let on_lines =
+            on_lines.map(|linear| lines::laid_out(wanted, &given, linear, [unknowns, parameters])).transpose()?;
         let expected = || lines::expected(wanted, &given, [unknowns, parameters]);
         let expected = (!has_all).then(expected).transpose()?;
         Ok(Some(GivenTapes {
@@ -140,15 +141,23 @@ pub(crate) struct Linear<'g> {
     pub(crate) widths: Vec<Expr<'g>>,
 }
 
+/// Variables for the widths of the ranges.
+fn widths<'g>(unknowns: &[Expr<'g>]) -> Vec<Expr<'g>> {
+    (0..unknowns.len()).map(|k| unknowns[k].graph().variable(format!("width {k}"))).collect()
+}
+
 impl<'g> Linear<'g> {
     fn new(residuals: &[Expr<'g>], unknowns: &[Expr<'g>]) -> Linear<'g> {
+        Linear::with_widths(residuals, unknowns, widths(unknowns))
+    }
+
+    fn with_widths(residuals: &[Expr<'g>], unknowns: &[Expr<'g>], widths: Vec<Expr<'g>>) -> Linear<'g> {
         let graph = unknowns[0].graph();
         let slopes = |f: &Expr<'g>| unknowns.iter().map(|x| f.derivative(*x)).collect();
         let jacobian: Vec<Vec<Expr<'g>>> = residuals.iter().map(slopes).collect();
         let cofactors: Vec<Vec<Expr<'g>>> = (0..residuals.len()).map(|row| cofactors(graph, &jacobian, row)).collect();
         let terms = jacobian[0].iter().zip(&cofactors[0]).map(|(a, b)| *a * *b);
         let determinant = terms.reduce(|a, b| a + b).unwrap_or(graph.constant(0.0));
-        let widths = (0..unknowns.len()).map(|k| graph.variable(format!("width {k}"))).collect();
         Linear { jacobian, cofactors, determinant, widths }
     }
 

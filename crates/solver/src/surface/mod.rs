@@ -136,17 +136,18 @@ impl SurfaceProblem {
         let extras: Vec<Expr<'g>> = point.iter().copied().chain(curvatures.into_iter().flatten()).collect();
         let inputs: Vec<Expr<'g>> = bound.unknowns.iter().copied().chain(targets).collect();
         let asked = coordinates.map(|coordinate| bound.unknowns.iter().position(|unknown| *unknown == coordinate));
-        let system = System::new(&residuals, &bound.unknowns, &targets)?;
+        let decisive = residuals.len() + conditions.len() + point.len();
+        let system = System::new(&residuals, &bound.unknowns, &targets)?
+            .with_conditions(&residuals, conditions, &extras, &inputs)?;
         let point = Tape::new(&point, &bound.unknowns)?;
         let jacobian = residuals.iter().flat_map(|f| bound.unknowns.iter().map(|unknown| f.derivative(*unknown)));
         let moved = bound.unknowns.iter().flat_map(|unknown| bound.position.derivative(*unknown).0);
         let slopes = Tape::new(&jacobian.chain(moved).collect::<Vec<Expr<'g>>>(), &inputs)?;
-        let decisive = Tape::new(conditions, &inputs)?;
         Ok(SurfaceProblem {
-            periodic: periodic_in(&[system.residual_tape(), &point, &decisive], &ranges),
+            periodic: periodic_in(&system.lanes.checked, decisive, &ranges),
             reach: None,
             search: SearchSystem::new(&residuals, &bound.unknowns, &targets, conditions)?,
-            system: system.with_conditions(&residuals, conditions, &extras, &inputs)?,
+            system,
             point,
             asked,
             slopes: LaneTape::new(&slopes),

@@ -133,11 +133,11 @@ impl Build<'_> {
         let (kind, height) = match pair.as_rule() {
             Rule::number => (self.number(pair), 0),
             Rule::string => (ExpressionKind::Text(self.text(pair).node), 0),
-            Rule::path => (ExpressionKind::Path(self.path(pair)), 0),
-            Rule::call => {
+            Rule::named if is_call(&pair) => {
                 let (call, height) = self.call_tree(pair);
                 (ExpressionKind::Call(call), height)
             }
+            Rule::named => (ExpressionKind::Path(self.path(pair)), 0),
             Rule::vector => {
                 let parts = Parts::of(pair).all(Rule::expression);
                 let trees: Vec<Tree> = parts.into_iter().map(|part| self.tree(part)).collect();
@@ -159,29 +159,32 @@ impl Build<'_> {
         let mut height = 0;
         let mut arguments = Vec::new();
         for pair in Parts::of(parts.required(Rule::arguments)).all(Rule::argument) {
-            let mut parts = Parts::of(pair);
-            if let Some(bound) = parts.optional(Rule::bound) {
-                let (value, own) = self.bound(bound);
-                height = height.max(own);
-                arguments.push(Argument { name: None, value });
-                continue;
-            }
-            let name = parts.optional(Rule::label).map(|label| self.name(Parts::of(label).required(Rule::name)));
-            let (value, own) = match parts.optional(Rule::dimension_word) {
-                Some(word) => (self.dimension_argument(word), 1),
-                None => self.tree(parts.required(Rule::expression)),
-            };
+            let (argument, own) = self.argument(pair);
             height = height.max(own);
-            arguments.push(Argument { name, value });
+            arguments.push(argument);
         }
         (Call { function, arguments, span }, height)
     }
 
-    /// `k in a .. b: value`
-    fn bound(&mut self, pair: Pair<'_, Rule>) -> Tree {
+    fn argument(&mut self, pair: Pair<'_, Rule>) -> (Argument, usize) {
         let span = self.span(&pair);
         let mut parts = Parts::of(pair);
-        let name = self.name(parts.required(Rule::name));
+        let name = parts.optional(Rule::label).map(|label| self.name(label));
+        if let Some(bound) = parts.optional(Rule::bound) {
+            let name = name.unwrap_or_else(|| unreachable!("the grammar has a name before it"));
+            let (value, height) = self.bound(name, bound, span);
+            return (Argument { name: None, value }, height);
+        }
+        let (value, height) = match parts.optional(Rule::dimension_word) {
+            Some(word) => (self.dimension_argument(word), 1),
+            None => self.tree(parts.required(Rule::expression)),
+        };
+        (Argument { name, value }, height)
+    }
+
+    /// `k in a .. b: value`, which has the name and this place.
+    fn bound(&mut self, name: Name, pair: Pair<'_, Rule>, span: Span) -> Tree {
+        let mut parts = Parts::of(pair);
         let range = parts.required(Rule::range);
         let range_span = self.span(&range);
         let mut ends = Parts::of(range);
@@ -235,6 +238,11 @@ impl Build<'_> {
         }
         (Expression { kind: ExpressionKind::Error, span }, 0)
     }
+}
+
+/// Whether arguments follow the name.
+fn is_call(named: &Pair<'_, Rule>) -> bool {
+    named.clone().into_inner().any(|part| part.as_rule() == Rule::arguments)
 }
 
 /// A flat row of operands, operators, and signs before operands.

@@ -180,6 +180,28 @@ impl<'t> LaneEvaluator<'t> {
         self.run_into(count, &mut []);
     }
 
+    /// The outputs at one place, as many as are asked for: those of the first lane. For a tape none of whose inputs is uniform and none of
+    /// whose outputs goes to memory of the caller.
+    ///
+    /// # Panics
+    /// If there are not so many inputs or outputs, or an input is uniform.
+    pub fn run_at(&mut self, inputs: &[f64], outputs: &mut [f64]) {
+        for (register, value) in self.tape.inputs[..inputs.len()].iter().zip(inputs) {
+            let register = register.expect("the input differs from lane to lane");
+            self.blocks[register as usize].0[0] = *value;
+        }
+        self.is_kept_stale |= !self.tape.by_lane.is_empty();
+        self.run_first(1);
+        let of_tape = &self.tape.outputs[..outputs.len()];
+        if self.native.is_some() {
+            let blocks = &self.blocks[self.tape.block_count..][..outputs.len()];
+            outputs.iter_mut().zip(blocks).for_each(|(output, block)| *output = block.0[0]);
+        } else {
+            let blocks = of_tape.iter().map(|block| &self.blocks[*block as usize]);
+            outputs.iter_mut().zip(blocks).for_each(|(output, block)| *output = block.0[0]);
+        }
+    }
+
     /// The same for a tape whose first outputs go to memory of the caller ([`LaneTape::writing`]).
     ///
     /// # Panics

@@ -119,6 +119,7 @@ impl LaneTape {
         let mut division = Division::new(tape, varies);
         let block = |place: &Place| (!place.varies.is_uniform()).then_some(place.index);
         let inputs = division.places[..tape.input_count()].iter().map(block).collect();
+        division.each.reserve(tape.instructions().len());
         tape.instructions().iter().for_each(|step| division.step(step));
         let outputs = tape.outputs().iter().map(|&register| division.output(register)).collect();
         let mut scalars = vec![0.0; division.scalar_count as usize];

@@ -143,9 +143,7 @@ impl<'c> Judge<'c> {
         let mut deepest: Vec<Verdict> = vec![None; points.len()];
         let motions: Vec<Vec<f64>> = points.iter().map(|point| self.cutting.motions(point, self.is_own)).collect();
         for running in 0..self.cutting.ranges.len() {
-            let placed = points.iter().zip(&motions);
-            let ways: Vec<Vec<Place>> =
-                placed.map(|(point, motions)| self.places(&Vector3::from(point.position), motions, running)).collect();
+            let ways = self.ways(points, &motions, running);
             for seen in &mut self.seen {
                 let (sights, looks) = seen.sights(&ways);
                 self.looks += points.len() as u64 + looks;
@@ -162,28 +160,39 @@ impl<'c> Judge<'c> {
         deepest
     }
 
-    /// Where a point is in the tool's frame while one of the motions runs, and the others stay; one of the places is its own if the tool
-    /// generates it.
-    fn places(&mut self, position: &Vector3<f64>, motions: &[f64], running: usize) -> Vec<Place> {
-        let own = motions[running];
-        let mut at = motions.to_vec();
-        let mut place = |number: usize, value: f64| {
+    /// Where points are in the tool's frame while one of the motions runs, and the others stay; one of the places of each is its own if the
+    /// tool generates it.
+    fn ways(&mut self, points: &[&SurfacePoint], motions: &[Vec<f64>], running: usize) -> Vec<Vec<Place>> {
+        let values = &self.values[running];
+        let at = |motions: &Vec<f64>, value: f64| {
+            let mut at = motions.clone();
             at[running] = value;
-            let pose = self.fixed.get(number).copied().unwrap_or_else(|| self.poses.at(&at, running));
-            pose.place(value, position)
+            at
         };
-        let values = self.values[running].iter().enumerate();
-        let mut places: Vec<Place> = values.map(|(number, value)| place(number, *value)).collect();
-        if !self.is_own {
-            return places;
-        }
-        let here = place(usize::MAX, own);
-        let after = places.partition_point(|place| place.motion < own);
-        match places.get_mut(after) {
-            Some(place) if place.motion == own => *place = here,
-            _ => places.insert(after, here),
-        }
-        places
+        // poses that are not the same for all points, point by point
+        let each = if self.fixed.is_empty() { values.as_slice() } else { &[] };
+        let wanted = motions.iter().flat_map(|motions| {
+            let own = self.is_own.then_some(motions[running]);
+            each.iter().copied().chain(own).map(move |value| at(motions, value))
+        });
+        let wanted: Vec<Vec<f64>> = wanted.collect();
+        let mut poses = self.poses.at_each(&wanted, running).into_iter();
+        let way = |(point, motions): (&&SurfacePoint, &Vec<f64>)| {
+            let position = Vector3::from(point.position);
+            let mut pose = |number: usize| self.fixed.get(number).copied().or_else(|| poses.next());
+            let mut place = |number: usize, value: f64| pose(number).map(|pose| pose.place(value, &position));
+            let mut places: Vec<Place> =
+                values.iter().enumerate().filter_map(|(number, value)| place(number, *value)).collect();
+            if self.is_own && let Some(here) = place(usize::MAX, motions[running]) {
+                let after = places.partition_point(|place| place.motion < here.motion);
+                match places.get_mut(after) {
+                    Some(place) if place.motion == here.motion => *place = here,
+                    _ => places.insert(after, here),
+                }
+            }
+            places
+        };
+        points.iter().zip(motions).map(way).collect()
     }
 }
 

@@ -1,5 +1,6 @@
 //! The way of one point of the work through the tool's frame while one motion runs, and where it enters the steel.
 
+use flank_expr::LANES;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::analysis::secondary::SecondaryCutting;
@@ -75,10 +76,23 @@ impl<'c> Poses<'c> {
     /// At values of the motions, with the derivative by the one of a number.
     pub(super) fn at(&mut self, motions: &[f64], running: usize) -> Pose {
         self.evaluator.run(motions, &mut self.out);
-        let matrix = |from: usize| Matrix3::from_row_slice(&self.out[from..from + 9]);
-        let vector = |from: usize| Vector3::from_row_slice(&self.out[from..from + 3]);
-        let [own, derived] = [0, 12 * (1 + running)];
-        Pose { rotation: [matrix(own), matrix(derived)], translation: [vector(own + 9), vector(derived + 9)] }
+        Pose::of(running, |k| self.out[k])
+    }
+
+    /// The same at many values of the motions.
+    pub(super) fn at_each(&mut self, motions: &[Vec<f64>], running: usize) -> Vec<Pose> {
+        let Some(lanes) = self.evaluator.lanes() else {
+            return motions.iter().map(|motions| self.at(motions, running)).collect();
+        };
+        let mut poses = Vec::with_capacity(motions.len());
+        for together in motions.chunks(LANES) {
+            for (lane, motions) in together.iter().enumerate() {
+                motions.iter().enumerate().for_each(|(k, value)| lanes.input(k)[lane] = *value);
+            }
+            lanes.run_first(together.len());
+            poses.extend((0..together.len()).map(|lane| Pose::of(running, |k| lanes.output(k)[lane])));
+        }
+        poses
     }
 
     /// The motion's values that are looked at first: the way of a point bends little from one to the next.
@@ -115,6 +129,14 @@ impl<'c> Poses<'c> {
 }
 
 impl Pose {
+    /// From the outputs of the tape of poses.
+    fn of(running: usize, out: impl Fn(usize) -> f64) -> Pose {
+        let matrix = |from: usize| Matrix3::from_fn(|row, column| out(from + 3 * row + column));
+        let vector = |from: usize| Vector3::from_fn(|row, _| out(from + row));
+        let [own, derived] = [0, 12 * (1 + running)];
+        Pose { rotation: [matrix(own), matrix(derived)], translation: [vector(own + 9), vector(derived + 9)] }
+    }
+
     pub(super) fn place(&self, motion: f64, point: &Vector3<f64>) -> Place {
         let velocity = self.rotation[1] * point + self.translation[1];
         Place { motion, point: self.rotation[0] * point + self.translation[0], velocity, speed: velocity.norm() }
