@@ -212,13 +212,11 @@ impl<'s> Enclosure<'s> {
     fn preconditioned(&mut self, row: usize) -> Interval {
         let n = self.size;
         let weights = &self.inverse[row * n..][..n];
-        let sum = |from: usize, step: usize, of: &[Interval]| {
-            let weighted = weights.iter().enumerate().map(|(k, weight)| of[from + k * step].times(*weight));
-            weighted.fold(Interval::point(0.0), |sum, term| sum + term)
-        };
         self.slopes.clear();
-        self.slopes.extend((0..n).map(|column| sum(n + column, n, &self.outputs)));
-        sum(0, 1, &self.at_point)
+        for column in 0..n {
+            self.slopes.push(weighted(weights, self.outputs[n + column..].iter().step_by(n)));
+        }
+        weighted(weights, self.at_point.iter())
     }
 
     /// Puts the inverse of the Jacobian's middle into `inverse`; whether there is one.
@@ -232,6 +230,26 @@ impl<'s> Enclosure<'s> {
         }
         eliminate(&mut self.matrix, &mut self.inverse, n)
     }
+}
+
+/// Σ weight · value; what is zero adds nothing.
+fn weighted<'v>(weights: &[f64], values: impl Iterator<Item = &'v Interval>) -> Interval {
+    let mut sum = None;
+    for (weight, value) in weights.iter().zip(values) {
+        if is_zero(*value) || *weight == 0.0 && !value.is_empty() {
+            continue;
+        }
+        let term = value.times(*weight);
+        sum = Some(sum.map_or(term, |sum| sum + term));
+    }
+    sum.unwrap_or(ZERO)
+}
+
+/// Nothing but zero.
+const ZERO: Interval = Interval { lo: 0.0, hi: 0.0, continuous: true };
+
+fn is_zero(value: Interval) -> bool {
+    value.lo == 0.0 && value.hi == 0.0
 }
 
 /// p ± r, rounded outward.
@@ -253,10 +271,14 @@ fn narrow(
     only: Option<usize>,
     terms: &mut Vec<Interval>,
 ) -> bool {
-    let shifts = left.iter().zip(middle).map(|(x, m)| *x - Interval::point(*m));
     terms.clear();
-    terms.extend(slopes.iter().zip(shifts).map(|(slope, shift)| *slope * shift));
-    if !terms.iter().fold(value, |sum, term| sum + *term).contains(0.0) {
+    for (slope, (x, m)) in slopes.iter().zip(left.iter().zip(middle)) {
+        terms.push(if is_zero(*slope) { ZERO } else { *slope * (*x - Interval::point(*m)) });
+    }
+    let sum = |terms: &[Interval], sum: Interval| {
+        terms.iter().filter(|term| !is_zero(**term)).fold(sum, |sum, term| sum + *term)
+    };
+    if !sum(terms, value).contains(0.0) {
         return false;
     }
     let columns = match only {
@@ -264,7 +286,7 @@ fn narrow(
         None => 0..left.len(),
     };
     for column in columns.filter(|&column| !slopes[column].contains(0.0)) {
-        let others = (0..left.len()).filter(|&k| k != column).fold(value, |sum, k| sum + terms[k]);
+        let others = sum(&terms[column + 1..], sum(&terms[..column], value));
         let solved = Interval::point(middle[column]) - others / slopes[column];
         left[column] = Interval { continuous: true, ..left[column].intersection(solved) };
         if left[column].is_empty() {

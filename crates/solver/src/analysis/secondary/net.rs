@@ -438,7 +438,7 @@ impl Seen<'_> {
         let mut next = open.len();
         let mut points = [[0.0; LANES]; 3];
         let mut at = [[0.0; LANES]; 2];
-        let mut steps = [Step::default(); LANES];
+        let mut steps = Steps::default();
         let put = |points: &mut [[f64; LANES]; 3], at: &mut [[f64; LANES]; 2], lane: usize, number: usize| {
             let (point, start) = &wanted[number];
             (0..3).for_each(|k| points[k][lane] = point[k]);
@@ -457,7 +457,7 @@ impl Seen<'_> {
             let mut kept = 0;
             for lane in 0..count {
                 let Open { number, steps: before } = open[lane];
-                let (step, own) = (steps[lane], [at[0][lane], at[1][lane]]);
+                let (step, own) = (steps.of(lane), [at[0][lane], at[1][lane]]);
                 let normal = || Vector3::new(outputs[3][lane], outputs[4][lane], outputs[5][lane]);
                 match piece.ended(own, &step, normal) {
                     None if before + 1 < MOST_STEPS => {
@@ -491,7 +491,7 @@ struct Open {
 }
 
 /// A step of Newton towards a foot.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 struct Step {
     /// Where it leads.
     to: [f64; 2],
@@ -528,18 +528,36 @@ impl Step {
     }
 }
 
-/// Of the first lanes, each with its point and its place.
+/// The steps of all lanes, number by number, so that vectors of them are computed at once.
+#[derive(Default)]
+struct Steps {
+    to: [[f64; LANES]; 2],
+    along: [f64; LANES],
+    clearance: [f64; LANES],
+}
+
+impl Steps {
+    fn of(&self, lane: usize) -> Step {
+        let to = [self.to[0][lane], self.to[1][lane]];
+        Step { to, along: self.along[lane], clearance: self.clearance[lane] }
+    }
+}
+
+/// Of the first lanes, `count` of them at least, each with its point and its place.
 #[inline(always)]
 fn steps_of(
     count: usize,
     (points, at): (&[[f64; LANES]; 3], &[[f64; LANES]; 2]),
     cells: [f64; 2],
     outputs: &[&[f64; LANES]; OUTPUTS],
-    steps: &mut [Step; LANES],
+    steps: &mut Steps,
 ) {
-    for (lane, step) in steps.iter_mut().enumerate().take(count) {
+    // whole vectors of any width
+    for lane in 0..count.next_multiple_of(8).min(LANES) {
         let point = [points[0][lane], points[1][lane], points[2][lane]];
-        *step = Step::new(point, [at[0][lane], at[1][lane]], cells, |k| outputs[k][lane]);
+        let step = Step::new(point, [at[0][lane], at[1][lane]], cells, |k| outputs[k][lane]);
+        (steps.to[0][lane], steps.to[1][lane]) = (step.to[0], step.to[1]);
+        (steps.along[lane], steps.clearance[lane]) = (step.along, step.clearance);
     }
 }
 
