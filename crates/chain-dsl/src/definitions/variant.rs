@@ -1,7 +1,7 @@
 //! A job that is another one with values or parts changed, `job plain = crowned(infeed: 0 mm, m.swivel: 3 deg, h: worn_hob)`, or with
 //! statements of its own, `job pair extends gear { … }`.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::definitions::machine::{Machines, axes_with_laws};
 use crate::diagnostics::Diagnostic;
@@ -57,7 +57,8 @@ pub(crate) fn extended(context: &mut Context<'_>, machines: &Machines, job: &Job
         let replaced: Vec<usize> = about.iter().filter_map(|about| places.remove(about)).collect();
         added.push(own.clone());
         for place in &replaced {
-            inherited[*place] = inherited[*place].drain(..).filter_map(|there| there.without(&about)).collect();
+            inherited[*place] =
+                inherited[*place].drain(..).filter_map(|there| there.without(|it| about.contains(it))).collect();
         }
         if let Some(first) = replaced.iter().min() {
             inherited[*first].append(&mut added);
@@ -77,23 +78,24 @@ fn machines_of(job: &Job) -> impl Iterator<Item = &Instance> {
 /// Without laws of axes whose motion the machines that take the place of others of the job give themselves; so does one that is such a
 /// machine under a second name.
 fn without_laws(context: &mut Context<'_>, machines: &Machines, mut job: Job, others: &[&Instance]) -> Job {
-    let other = |name: &str| others.iter().copied().find(|other| other.name.node == name);
-    let is_new = |other: &&Instance| machines_of(&job).all(|known| known.name.node != other.name.node);
-    let added = others.iter().copied().filter(is_new);
-    let inherited = machines_of(&job).map(|known| other(&known.name.node).unwrap_or(known));
+    let names: HashSet<&str> = machines_of(&job).map(|known| known.name.node.as_str()).collect();
+    let added = others.iter().copied().filter(|other| !names.contains(other.name.node.as_str()));
+    let other: HashMap<&str, &Instance> = others.iter().map(|other| (other.name.node.as_str(), *other)).collect();
+    let inherited = machines_of(&job).map(|known| other.get(known.name.node.as_str()).copied().unwrap_or(known));
     // what each is one of, and whether that is another machine than it was
     let mut known: HashMap<&str, (&str, bool)> = HashMap::new();
-    let mut fallen = Vec::new();
+    let mut fallen = HashSet::new();
     for Instance { name, definition, .. } in added.chain(inherited) {
         let (of, follows) = known.get(definition.node.as_str()).copied().unwrap_or((&definition.node, false));
-        let is_another = follows || other(&name.node).is_some();
+        let is_another = follows || other.contains_key(name.node.as_str());
         known.insert(&name.node, (of, is_another));
         if is_another {
             let axes = axes_with_laws(context, machines, of);
             fallen.extend(axes.into_iter().map(|axis| (Subject::Axis, format!("{}.{axis}", name.node))));
         }
     }
-    job.statements = job.statements.into_iter().filter_map(|statement| statement.without(&fallen)).collect();
+    job.statements =
+        job.statements.into_iter().filter_map(|statement| statement.without(|it| fallen.contains(it))).collect();
     job
 }
 
