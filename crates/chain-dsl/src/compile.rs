@@ -347,22 +347,26 @@ impl Items {
                              it another name in one of the files";
         let mut items = Items::default();
         let mut seen: HashMap<String, Span> = HashMap::new();
-        for (file, parsed) in files {
+        for (_, parsed) in files {
             for item in &parsed.items {
                 let Some(name) = item.name() else { continue };
                 if let Some(first) = seen.insert(name.node.clone(), name.span) {
                     let is_apart = is_beside && first.file != name.span.file;
                     context.duplicate_with(name, first, is_apart.then_some(APART));
                 }
-                items.add(context, *file, item);
+                items.define(context, item);
             }
+        }
+        // jobs that are made from others may name machines that are defined below them
+        for (file, item) in files.iter().flat_map(|(file, parsed)| parsed.items.iter().map(|item| (*file, item))) {
+            items.add_job(context, file, item);
         }
         items
     }
 
-    fn add(&mut self, context: &mut Context<'_>, file: FileId, item: &Item) {
+    fn define(&mut self, context: &mut Context<'_>, item: &Item) {
         match item {
-            Item::Use(_) => {}
+            Item::Use(_) | Item::Job(_) | Item::Variant(_) => {}
             Item::Function(function) => {
                 if functions::names().any(|known| known == function.name.node) {
                     let message = format!("`{}` is a function of the language", function.name.node);
@@ -377,17 +381,23 @@ impl Items {
             Item::Tool(tool) => {
                 self.tools.insert(tool.name.node.clone(), tool.clone());
             }
+        }
+    }
+
+    fn add_job(&mut self, context: &mut Context<'_>, file: FileId, item: &Item) {
+        match item {
+            Item::Use(_) | Item::Function(_) | Item::Machine(_) | Item::Tool(_) => {}
             Item::Job(job) => {
                 let Some(parent) = &job.extends else {
                     return self.jobs.push(JobItem { file, job: job.clone(), made_from: Vec::new() });
                 };
-                self.add_made(context, file, (&job.name, parent), |context, parent| {
-                    variant::extended(context, job, parent)
+                self.add_made(context, file, (&job.name, parent), |context, machines, parent| {
+                    variant::extended(context, machines, job, parent)
                 });
             }
             Item::Variant(variant) => {
-                self.add_made(context, file, (&variant.name, &variant.parent), |context, parent| {
-                    variant::expanded(context, variant, parent)
+                self.add_made(context, file, (&variant.name, &variant.parent), |context, machines, parent| {
+                    variant::expanded(context, machines, variant, parent)
                 });
             }
         }
@@ -399,7 +409,7 @@ impl Items {
         context: &mut Context<'g>,
         file: FileId,
         (name, parent): (&Name, &Name),
-        make: impl FnOnce(&mut Context<'g>, &ast::Job) -> ast::Job,
+        make: impl FnOnce(&mut Context<'g>, &Machines, &ast::Job) -> ast::Job,
     ) {
         /// Bytes of a job that cost as much as a step of evaluation: what is made of it is a copy.
         const BYTES_A_STEP: usize = 2;
@@ -418,7 +428,7 @@ impl Items {
         let made_from: Vec<Span> = made_from.iter().copied().chain([found.span]).collect();
         let bytes: usize = made_from.iter().map(|span| (span.end - span.start) as usize).sum();
         if context.spend(bytes / BYTES_A_STEP, name.span) {
-            let job = make(context, found);
+            let job = make(context, &self.machines, found);
             self.jobs.push(JobItem { file, job, made_from });
         }
     }

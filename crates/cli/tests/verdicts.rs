@@ -288,12 +288,15 @@ fn a_search_without_prospect_ends() {
         "machines/hobbing_6axis",
         "machines/hobbing_edges",
         "tools/involute",
+        "tools/hob_zi",
         "tools/hob_zi_edges",
+        "hobbing/helical_gear",
+        "hobbing/real_hob",
     ];
-    let hob = self_contained(&[&library[..], &["hobbing/real_hob"]].concat());
-    let turning = hob.lines().find(|line| line.trim_start().starts_with("drive r.C =")).expect("the table turns");
-    let spec = written(&folder, "still.chain", &hob.replace(turning, "    drive r.C = 0 rad"));
-    let run = flank(&["solve", &spec, "--no-picture", "--out", folder.to_str().expect("a plain path")]);
+    let still = "job still extends real_hob { drive r.C = 0 rad }";
+    let spec = written(&folder, "still.chain", &format!("{}{still}", self_contained(&library)));
+    let out = folder.to_str().expect("a plain path");
+    let run = flank(&["solve", &spec, "--job", "still", "--no-picture", "--out", out]);
     assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
     let told = text(&run.stderr);
     assert!(told.contains("what is left is unknown at 40000 of 40000 points of lower_flank"), "{told}");

@@ -1,7 +1,7 @@
 //! Machines: what `extends` amounts to, axes and their laws, the tree of frames.
 
 use std::collections::hash_map::Entry;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use flank_expr::{Expr, Interval};
 
@@ -150,6 +150,37 @@ pub(crate) fn flatten<'a, 'g>(
         return None;
     }
     Some(flat)
+}
+
+/// The axes whose motion a machine gives itself, by a law or by a closed loop, its own and those of what it extends; of one that is wrong,
+/// as many as are known.
+pub(crate) fn axes_with_laws<'a>(context: &mut Context<'_>, machines: &'a Machines, name: &str) -> BTreeSet<&'a str> {
+    let mut line: Vec<&ast::Machine> = Vec::new();
+    let mut next = machines.get(name);
+    while let Some(machine) = next.filter(|_| line.len() < limits::EXTENDS_DEPTH.most) {
+        if !context.spend(machine.statements.len(), machine.name.span) {
+            return BTreeSet::new();
+        }
+        line.push(machine);
+        next = machine.extends.as_ref().and_then(|parent| machines.get(&parent.node));
+    }
+    let (mut laws, mut closed) = (BTreeSet::new(), BTreeSet::new());
+    for statement in line.into_iter().rev().flat_map(|machine| &machine.statements) {
+        match statement {
+            MachineStatement::Fix(law) | MachineStatement::Couple(law) => {
+                laws.insert(law.target.segments[0].node.as_str());
+            }
+            MachineStatement::Axis(axis) if axis.is_unknown => {
+                closed.insert(axis.name.node.as_str());
+            }
+            MachineStatement::Axis(axis) => {
+                closed.remove(axis.name.node.as_str());
+            }
+            _ => {}
+        }
+    }
+    laws.extend(closed);
+    laws
 }
 
 /// Whether an expression names one of these.

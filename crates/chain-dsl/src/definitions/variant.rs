@@ -1,16 +1,17 @@
 //! A job that is another one with values or parts changed, `job plain = crowned(infeed: 0 mm, m.swivel: 3 deg, h: worn_hob)`, or with
 //! statements of its own, `job pair extends gear { … }`.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
+use crate::definitions::machine::{Machines, axes_with_laws};
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::syntax::ast::{Argument, Change, Expected, ExpressionKind, Instance, Job, JobStatement, Subject, Variant};
 use crate::values::context::{Context, suggesting};
 
 /// The job that a variant of an earlier one stands for.
-pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Job) -> Job {
-    let mut job = changed(context, &variant.changes, parent);
+pub(crate) fn expanded(context: &mut Context<'_>, machines: &Machines, variant: &Variant, parent: &Job) -> Job {
+    let mut job = changed(context, machines, &variant.changes, parent);
     job.name = variant.name.clone();
     if !variant.doc.is_empty() {
         job.doc = variant.doc.clone();
@@ -18,7 +19,7 @@ pub(crate) fn expanded(context: &mut Context<'_>, variant: &Variant, parent: &Jo
     job
 }
 
-fn changed(context: &mut Context<'_>, changes: &[Change], parent: &Job) -> Job {
+fn changed(context: &mut Context<'_>, machines: &Machines, changes: &[Change], parent: &Job) -> Job {
     let mut job = parent.clone();
     for (k, change) in changes.iter().enumerate() {
         let same = |earlier: &&Change| names(earlier).eq(names(change));
@@ -31,13 +32,17 @@ fn changed(context: &mut Context<'_>, changes: &[Change], parent: &Job) -> Job {
             None => drop(made(context, &mut job, change, &parent.name.node)),
         }
     }
-    job
+    let is_another =
+        |instance: &&Instance| changes.iter().any(|change| names(change).eq([instance.name.node.as_str()]));
+    let others: Vec<Instance> = machines_of(&job).filter(is_another).cloned().collect();
+    without_laws(context, machines, job, &others.iter().collect::<Vec<_>>())
 }
 
 /// A job with the statements of the earlier one that it extends, in which values and parts may be changed: one of its own that is about the
 /// same takes the place of one of those. Others come before the next one that does, or at the end.
-pub(crate) fn extended(context: &mut Context<'_>, job: &Job, parent: &Job) -> Job {
-    let parent = without_replaced(changed(context, &job.changes, parent), job);
+pub(crate) fn extended(context: &mut Context<'_>, machines: &Machines, job: &Job, parent: &Job) -> Job {
+    let parent = without_replaced(changed(context, machines, &job.changes, parent), job);
+    let parent = without_laws(context, machines, parent, &machines_of(job).collect::<Vec<_>>());
     let mut places: HashMap<(Subject, String), usize> = HashMap::new();
     for (place, statement) in parent.statements.iter().enumerate() {
         places.extend(statement.about().into_iter().map(|about| (about, place)));
@@ -52,7 +57,8 @@ pub(crate) fn extended(context: &mut Context<'_>, job: &Job, parent: &Job) -> Jo
         let replaced: Vec<usize> = about.iter().filter_map(|about| places.remove(about)).collect();
         added.push(own.clone());
         for place in &replaced {
-            inherited[*place] = inherited[*place].drain(..).filter_map(|there| there.without(&about)).collect();
+            inherited[*place] =
+                inherited[*place].drain(..).filter_map(|there| there.without(|it| about.contains(it))).collect();
         }
         if let Some(first) = replaced.iter().min() {
             inherited[*first].append(&mut added);
@@ -60,6 +66,37 @@ pub(crate) fn extended(context: &mut Context<'_>, job: &Job, parent: &Job) -> Jo
     }
     let doc = if job.doc.is_empty() { parent.doc } else { job.doc.clone() };
     Job { doc, statements: inherited.into_iter().flatten().chain(added).collect(), ..job.clone() }
+}
+
+fn machines_of(job: &Job) -> impl Iterator<Item = &Instance> {
+    job.statements.iter().filter_map(|statement| match statement {
+        JobStatement::Machine(instance) => Some(instance),
+        _ => None,
+    })
+}
+
+/// Without laws of axes whose motion the machines that take the place of others of the job give themselves; so does one that is such a
+/// machine under a second name.
+fn without_laws(context: &mut Context<'_>, machines: &Machines, mut job: Job, others: &[&Instance]) -> Job {
+    let names: HashSet<&str> = machines_of(&job).map(|known| known.name.node.as_str()).collect();
+    let added = others.iter().copied().filter(|other| !names.contains(other.name.node.as_str()));
+    let other: HashMap<&str, &Instance> = others.iter().map(|other| (other.name.node.as_str(), *other)).collect();
+    let inherited = machines_of(&job).map(|known| other.get(known.name.node.as_str()).copied().unwrap_or(known));
+    // what each is one of, and whether that is another machine than it was
+    let mut known: HashMap<&str, (&str, bool)> = HashMap::new();
+    let mut fallen = HashSet::new();
+    for Instance { name, definition, .. } in added.chain(inherited) {
+        let (of, follows) = known.get(definition.node.as_str()).copied().unwrap_or((&definition.node, false));
+        let is_another = follows || other.contains_key(name.node.as_str());
+        known.insert(&name.node, (of, is_another));
+        if is_another {
+            let axes = axes_with_laws(context, machines, of);
+            fallen.extend(axes.into_iter().map(|axis| (Subject::Axis, format!("{}.{axis}", name.node))));
+        }
+    }
+    job.statements =
+        job.statements.into_iter().filter_map(|statement| statement.without(|it| fallen.contains(it))).collect();
+    job
 }
 
 /// Without expectations that a job which extends it replaces by its own about the same, or drops.

@@ -46,6 +46,48 @@ fn a_variant_adds_replaces_and_fixes() {
 }
 
 #[test]
+fn a_machine_in_the_place_of_another_brings_its_own_laws() {
+    let text = "
+        job first {
+            machine m = lathe(height: 4 mm)
+            machine n = m
+            tool b = ball
+            tool d = b
+            mount b on m.slide
+            mount d on n.slide
+            motion turn : angle in 0 deg .. 90 deg
+            drive m.C, m.Z, n.Z = turn, 4 mm/rad * turn, 5 mm/rad * turn
+            drive n.C = turn
+            surface s in m.work = envelope(b.face, over: turn)
+            surface t in n.work = envelope(d.face, over: turn)
+        }
+        job changed = first(m: fixed(height: 4 mm))
+        job extending extends first { machine m = fixed(height: 4 mm) }
+        job of_one extends first { machine n = geared(height: 4 mm) }
+        job free_again extends changed { machine m = lathe(height: 4 mm)  drive m.Z, n.Z = 6 mm, 7 mm }
+        job by_a_second_name extends first { machine k = fixed(height: 4 mm)  drive k.C = 1 deg  machine m = k }
+        machine fixed extends lathe { fix Z = 3 mm }
+        machine geared extends fixed { couple Z = 2 mm/rad * C }";
+    let graph = Graph::new();
+    let compilation = compiled(&graph, text);
+    let laws = |name: &str| {
+        let job = compilation.jobs.iter().find(|job| job.name == name).expect("there is such a job");
+        let of = |machine: &flank_chain_dsl::Machine<'_>| {
+            let axes = machine.axes.iter().map(|axis| format!("{}.{} = {}", machine.name, axis.name, axis.law));
+            axes.collect::<Vec<_>>().join(", ")
+        };
+        job.machines.iter().map(of).collect::<Vec<_>>()
+    };
+    let fixed = ["m.Z = 3, m.C = turn", "n.Z = 3, n.C = turn"];
+    assert_eq!(laws("first"), ["m.Z = 4 * turn, m.C = turn", "n.Z = 5 * turn, n.C = turn"]);
+    assert_eq!(laws("changed"), fixed);
+    assert_eq!(laws("extending"), fixed);
+    assert_eq!(laws("of_one"), ["m.Z = 4 * turn, m.C = turn", "n.Z = 2 * turn, n.C = turn"]);
+    assert_eq!(laws("free_again"), ["m.Z = 6, m.C = turn", "n.Z = 7, n.C = turn"]);
+    assert_eq!(laws("by_a_second_name")[1..], fixed);
+}
+
+#[test]
 fn coupled_axes_follow_through_others() {
     let text = "
         machine geared extends lathe {

@@ -176,9 +176,9 @@ impl JobStatement {
         }
     }
 
-    /// What is left of it where it is not about these; nothing if it was about nothing else.
-    pub(crate) fn without(mut self, others: &[(Subject, String)]) -> Option<JobStatement> {
-        let is_left: Vec<bool> = self.about().iter().map(|about| !others.contains(about)).collect();
+    /// What is left of it without what it says of some things; nothing if it was about nothing else.
+    pub(crate) fn without(mut self, is_one: impl Fn(&(Subject, String)) -> bool) -> Option<JobStatement> {
+        let is_left: Vec<bool> = self.about().iter().map(|about| !is_one(about)).collect();
         if !is_left.is_empty() && !is_left.contains(&true) {
             return None;
         }

@@ -69,7 +69,14 @@ impl Analysis {
         let beside = self.index.symbols.iter().zip(0u32..).find(|(symbol, other)| {
             let is_own = self.index.root(SymbolId(*other)) == own;
             let is_alike = is_apart(symbol.kind) == is_apart(self.kind(own));
-            !is_own && is_alike && self.sources.text(symbol.name) == name && is_beside(symbol.owner)
+            // a job that extends another one may ask for points by a coordinate of the same name
+            let is_of_another_sample = [symbol.kind, self.kind(own)] == [NameKind::Coordinate; 2]
+                && symbol.owner != self.index.symbol(own).owner;
+            !is_own
+                && is_alike
+                && !is_of_another_sample
+                && self.sources.text(symbol.name) == name
+                && is_beside(symbol.owner)
         });
         match beside {
             Some((symbol, _)) => Err(RenameError::Taken(name.to_string(), self.sources.place(symbol.name).1)),
