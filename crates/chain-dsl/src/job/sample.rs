@@ -472,12 +472,12 @@ fn corner_point<'g>(context: &mut Context<'g>, entry: &SampleEntry, scope: &Scop
         context.report(Diagnostic::new(Code::SampleShape, written.span, message));
         return None;
     };
-    let z = context.require(z, Dimension::LENGTH, written.span, &format!("z of {what}"));
-    let rho = context.require(rho, Dimension::LENGTH, written.span, &format!("rho of {what}"));
+    let z = context.require(z, Dimension::LENGTH, written.span, format_args!("z of {what}"));
+    let rho = context.require(rho, Dimension::LENGTH, written.span, format_args!("rho of {what}"));
     let both = [z?, rho?];
     let values = [
-        context.require_constant(both[0], written.span, &format!("z of {what}"))?,
-        context.require_constant(both[1], written.span, &format!("rho of {what}"))?,
+        context.require_constant(both[0], written.span, format_args!("z of {what}"))?,
+        context.require_constant(both[1], written.span, format_args!("rho of {what}"))?,
     ];
     Some(Corner { values, written: both })
 }
