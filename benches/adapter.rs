@@ -39,7 +39,8 @@ struct Arguments {
 }
 
 fn arguments() -> Result<Arguments, String> {
-    let mut found = Arguments { job: "flank".into(), counts: [31, 61], repetitions: 3, lanes: None, out: String::new() };
+    let mut found =
+        Arguments { job: "flank".into(), counts: [31, 61], repetitions: 3, lanes: None, out: String::new() };
     let mut words = std::env::args().skip(1);
     while let Some(key) = words.next() {
         let value = words.next().ok_or_else(|| format!("`{key}` lacks its value"))?;

@@ -321,7 +321,8 @@ impl Field {
             for (block, values) in (k * AT_ONCE..).zip(some.chunks_exact(planes)) {
                 let (line, first) = (block % count, block / count * LANES);
                 let lanes = (0..LANES.min(length - first)).filter(|lane| values[size][*lane].is_nan());
-                let among = lanes.map(|lane| self.shape.point(line, first + lane)).filter(|point| points.contains(point));
+                let among =
+                    lanes.map(|lane| self.shape.point(line, first + lane)).filter(|point| points.contains(point));
                 found.extend(among);
             }
         }
@@ -330,8 +331,7 @@ impl Field {
 
     fn count(&self, is_meant: impl Fn(Mark) -> bool) -> usize {
         // as many as fit into a byte, which is vectors
-        let of =
-            |marks: &[Mark]| marks.iter().fold(0u8, |count, mark| count.wrapping_add(u8::from(is_meant(*mark))));
+        let of = |marks: &[Mark]| marks.iter().fold(0u8, |count, mark| count.wrapping_add(u8::from(is_meant(*mark))));
         self.marks.as_flattened().chunks(usize::from(u8::MAX)).map(|marks| usize::from(of(marks))).sum()
     }
 
