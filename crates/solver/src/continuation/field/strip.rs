@@ -100,12 +100,14 @@ impl Strip<'_> {
         let mut known = known.iter().peekable();
         let mut follows = false;
         let mut spare = vec![[0.0; LANES]; self.shape.planes];
+        // of all lines one after the other, as they lie in memory: between runs each would be waited for
+        let untouched: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for (line, prepared) in lines.iter().enumerate() {
             let beside = known.next_if(|(known, _)| *known == line);
             if let Some((_, determinant)) = beside {
                 on_line.set_determinant(*determinant);
             }
-            let is_free = self.is_untouched(line);
+            let is_free = untouched[line];
             let is_next = beside.is_some() || follows && is_free;
             follows = false;
             let Some(prepared) = prepared.as_ref().filter(|_| is_next) else { continue };
@@ -159,11 +161,16 @@ impl Strip<'_> {
     }
 
     pub(super) fn is_line_of_roots(&self, line: usize) -> bool {
-        self.marks[line][..self.width].iter().all(|mark| mark.is_root())
+        self.are_all(line, Mark::is_root)
     }
 
     fn is_untouched(&self, line: usize) -> bool {
-        self.marks[line][..self.width].iter().all(|mark| *mark == Mark::Unknown)
+        self.are_all(line, |mark| mark == Mark::Unknown)
+    }
+
+    /// Without an end at the first one that is not meant: that is vectors.
+    fn are_all(&self, line: usize, is_meant: impl Fn(Mark) -> bool) -> bool {
+        self.marks[line][..self.width].iter().fold(true, |all, mark| all & is_meant(*mark))
     }
 
     pub(super) fn plane(&self, line: usize, plane: usize) -> &Lanes {
