@@ -1,6 +1,9 @@
-//! The common jobs for the harness that compares programs: one line of JSON on stdout, nine numbers a point in a file.
+//! The common jobs for the harness that compares programs: one line of JSON on stdout; in a file nine numbers a point, ten of `helical`.
 //!
-//! `adapter --job flank|grid --n1 501 --n2 501 --threads 1 --reps 15 --out points.bin`
+//! `adapter --job flank|grid|helical --n1 501 --n2 501 --threads 1 --reps 15 --out points.bin [--lanes 4]`
+//!
+//! `--lanes` takes the machine code with registers of so many numbers instead of the widest: 4 is AVX2. Loops that the compiler makes
+//! stay as wide as the processor's registers.
 
 use std::fmt::Write as _;
 use std::fs::File;
@@ -10,21 +13,34 @@ use std::time::Instant;
 
 use flank_benches::peak_memory;
 use flank_chain_dsl::{compile_text, render};
-use flank_expr::Graph;
+use flank_expr::{Graph, InstructionSet};
 use flank_solver::{BoundSurface, Range, SurfaceProblem};
 
-/// Where the common job starts: s, theta, phi.
-const START: [f64; 3] = [5.4, -2.45, -0.26];
+/// The text of a common job, and where it starts.
+struct Common {
+    name: &'static str,
+    text: &'static str,
+    start: &'static [f64],
+}
+
+/// Starts are s, theta, phi.
+const SPIRAL_BEVEL: Common =
+    Common { name: "spiral_bevel", text: include_str!("spiral_bevel.chain"), start: &[5.4, -2.45, -0.26] };
+/// Starts are xi, tau, spindle, feed.
+const HELICAL: Common =
+    Common { name: "helical_zi", text: include_str!("helical_zi.chain"), start: &[4.6, -0.86, 3.2, 0.0] };
 
 struct Arguments {
     job: String,
     counts: [usize; 2],
     repetitions: usize,
+    lanes: Option<usize>,
     out: String,
 }
 
 fn arguments() -> Result<Arguments, String> {
-    let mut found = Arguments { job: "flank".into(), counts: [31, 61], repetitions: 3, out: String::new() };
+    let mut found =
+        Arguments { job: "flank".into(), counts: [31, 61], repetitions: 3, lanes: None, out: String::new() };
     let mut words = std::env::args().skip(1);
     while let Some(key) = words.next() {
         let value = words.next().ok_or_else(|| format!("`{key}` lacks its value"))?;
@@ -35,6 +51,7 @@ fn arguments() -> Result<Arguments, String> {
             "--n2" => found.counts[1] = number()?,
             "--threads" => set_threads(number()?)?,
             "--reps" => found.repetitions = number()?.max(1),
+            "--lanes" => found.lanes = Some(number()?),
             "--out" => found.out = value,
             _ => return Err(format!("unknown argument `{key}`")),
         }
@@ -68,7 +85,8 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     let graph = Graph::new();
     let [rows, columns] = arguments.counts.map(|count| count.to_string());
     let sizes = [("rows".to_string(), rows), ("columns".to_string(), columns)];
-    let mut compilation = compile_text(&graph, "spiral_bevel", include_str!("spiral_bevel.chain"), &sizes);
+    let Common { name, text, start: first } = if arguments.job == "helical" { HELICAL } else { SPIRAL_BEVEL };
+    let mut compilation = compile_text(&graph, name, text, &sizes);
     if compilation.has_errors() {
         return Err(render(&compilation.diagnostics, &compilation.sources, false));
     }
@@ -79,15 +97,20 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let is_curved = arguments.job == "grid";
     let new = if is_curved { SurfaceProblem::with_curvatures } else { SurfaceProblem::new };
-    let problem = new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
+    let mut problem = new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
         .map_err(|error| error.to_string())?;
+    if let Some(lanes) = arguments.lanes {
+        let is_meant = |set: &InstructionSet| set.machine_code() == Some(lanes);
+        let set = InstructionSet::available().into_iter().find(is_meant);
+        problem = problem.with_instruction_set(set.ok_or_else(|| format!("no machine code with {lanes} lanes here"))?);
+    }
     let setup = start.elapsed().as_secs_f64();
 
     let targets = sample.targets();
     let (mut times, mut evaluations, mut memory) = (Vec::new(), 0, None);
     for _ in 0..arguments.repetitions {
         let start = Instant::now();
-        let (points, effort) = problem.solve_points(&targets, sample.counts, Some(&START), memory.take());
+        let (points, effort) = problem.solve_points(&targets, sample.counts, Some(first), memory.take());
         if points.solved() < points.len() {
             return Err(format!("{} of {} points are solved", points.solved(), points.len()));
         }

@@ -97,6 +97,11 @@ fn definitions<'g>(given: &[Given<'g>], unknowns: &[Expr<'g>]) -> Vec<(Expr<'g>,
     given.iter().map(|given| (unknowns[given.unknown], given.form)).collect()
 }
 
+/// The largest of some terms, by pairs and pairs of pairs: of a row of maxima each waits for the one before.
 fn most<'g>(terms: impl Iterator<Item = Expr<'g>>) -> Option<Expr<'g>> {
-    terms.reduce(|a, b| a.max(b))
+    let mut terms: Vec<Expr<'g>> = terms.collect();
+    while terms.len() > 1 {
+        terms = terms.chunks(2).map(|pair| pair.iter().copied().reduce(|a, b| a.max(b)).unwrap_or(pair[0])).collect();
+    }
+    terms.pop()
 }

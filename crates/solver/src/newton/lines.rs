@@ -39,11 +39,13 @@ impl<'s> Expected<'s> {
     }
 
     /// What is expected of an unknown or, after the unknowns, a parameter.
+    #[inline]
     pub(crate) fn input(&mut self, k: usize) -> &mut Lanes {
         self.evaluator.input(k)
     }
 
     /// The determinants, no numbers where they may vanish.
+    #[inline]
     pub(crate) fn determinant(&mut self) -> &mut Lanes {
         self.evaluator.input(self.determinant)
     }

@@ -27,6 +27,9 @@ pub(crate) use strip::Strip;
 /// Around a point the Jacobian has an inverse if its determinants there differ by less than this factor.
 pub(crate) const SAME_DETERMINANT: f64 = 4.0;
 
+/// Blocks that are looked at before it is decided whether one of them needs a closer look.
+const AT_ONCE: usize = 16;
+
 /// What is known of a point: its outcome, without what follows from its unknowns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Mark {
@@ -96,6 +99,11 @@ impl Shape {
     /// Number in the grid of a point of a line.
     pub(crate) fn point(&self, line: usize, at: usize) -> usize {
         if self.lines == Lines::Rows { line * self.columns + at } else { at * self.columns + line }
+    }
+
+    /// Whether points of a line stand beside each other in the grid, too.
+    fn lanes_are_beside(&self) -> bool {
+        self.lines == Lines::Rows
     }
 
     /// Block and lane of a point.
@@ -301,25 +309,30 @@ impl Field {
     /// Those of some points at which no determinant is known; points of which nothing is known may be among them.
     pub(crate) fn without_determinant(&self, points: ops::Range<usize>) -> Vec<usize> {
         let Shape { count, length, size, planes, .. } = self.shape;
+        let blocks = self.values.as_chunks::<LANES>().0;
+        let lacks_any =
+            |values: &[Lanes]| values[size].iter().fold(false, |any, determinant| any | determinant.is_nan());
         let mut found = Vec::new();
-        for (block, values) in self.values.as_chunks::<LANES>().0.chunks(planes).enumerate() {
-            let determinants = &values[size];
-            if !determinants.iter().fold(false, |any, determinant| any | determinant.is_nan()) {
+        // some blocks without a decision between them, so that one is on its way from memory while another is looked at
+        for (k, some) in blocks.chunks(AT_ONCE * planes).enumerate() {
+            if !some.chunks_exact(planes).fold(false, |any, values| any | lacks_any(values)) {
                 continue;
             }
-            let (line, first) = (block % count, block / count * LANES);
-            let lanes = (0..LANES.min(length - first)).filter(|lane| determinants[*lane].is_nan());
-            found.extend(lanes.map(|lane| self.shape.point(line, first + lane)).filter(|point| points.contains(point)));
+            for (block, values) in (k * AT_ONCE..).zip(some.chunks_exact(planes)) {
+                let (line, first) = (block % count, block / count * LANES);
+                let lanes = (0..LANES.min(length - first)).filter(|lane| values[size][*lane].is_nan());
+                let among =
+                    lanes.map(|lane| self.shape.point(line, first + lane)).filter(|point| points.contains(point));
+                found.extend(among);
+            }
         }
         found
     }
 
     fn count(&self, is_meant: impl Fn(Mark) -> bool) -> usize {
-        // as many as fit into a byte, which takes a few vectors to see
-        let of = |marks: &[Mark; LANES]| {
-            usize::from(marks.iter().fold(0u8, |count, mark| count.wrapping_add(u8::from(is_meant(*mark)))))
-        };
-        self.marks.iter().map(of).sum()
+        // as many as fit into a byte, which is vectors
+        let of = |marks: &[Mark]| marks.iter().fold(0u8, |count, mark| count.wrapping_add(u8::from(is_meant(*mark))));
+        self.marks.as_flattened().chunks(usize::from(u8::MAX)).map(|marks| usize::from(of(marks))).sum()
     }
 
     /// A point by the careful path.

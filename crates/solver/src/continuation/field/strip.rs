@@ -14,8 +14,8 @@ use crate::newton::lines::OnLine;
 
 /// A midpoint may lie this share of the way between its neighbours from where it was looked for, and [`NEAR`] of the ranges.
 const ASTRAY: f64 = 0.25;
-/// Lines whose targets are put in order at once.
-const LINES: usize = 64;
+/// Lanes whose targets are put in order at once: a line of a cache takes so many.
+const BESIDE: usize = 8;
 
 /// The same part of all lines of a field.
 pub(crate) struct Strip<'f> {
@@ -100,12 +100,14 @@ impl Strip<'_> {
         let mut known = known.iter().peekable();
         let mut follows = false;
         let mut spare = vec![[0.0; LANES]; self.shape.planes];
+        // of all lines one after the other, as they lie in memory: between runs each would be waited for
+        let untouched: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for (line, prepared) in lines.iter().enumerate() {
             let beside = known.next_if(|(known, _)| *known == line);
             if let Some((_, determinant)) = beside {
                 on_line.set_determinant(*determinant);
             }
-            let is_free = self.is_untouched(line);
+            let is_free = untouched[line];
             let is_next = beside.is_some() || follows && is_free;
             follows = false;
             let Some(prepared) = prepared.as_ref().filter(|_| is_next) else { continue };
@@ -127,13 +129,27 @@ impl Strip<'_> {
     fn put_in_order(&self, targets: &[[f64; 2]], ordered: &mut Vec<[Lanes; 2]>) {
         let shape = self.shape;
         ordered.resize(shape.count, [[0.0; LANES]; 2]);
-        let step = shape.point(1, self.first) - shape.point(0, self.first);
-        // some lines at once, so that targets are read where they lie beside each other
-        for (k, lines) in ordered.chunks_mut(LINES).enumerate() {
-            for lane in 0..self.width.min(LANES) {
-                let targets = targets[shape.point(k * LINES, self.first + lane)..].iter().step_by(step);
-                for (ordered, target) in lines.iter_mut().zip(targets) {
-                    [ordered[0][lane], ordered[1][lane]] = *target;
+        let width = self.width.min(LANES);
+        if shape.lanes_are_beside() {
+            for (line, ordered) in ordered.iter_mut().enumerate() {
+                let targets = &targets[shape.point(line, self.first)..][..width];
+                let [first, second] = ordered;
+                for ((target, first), second) in targets.iter().zip(first).zip(second) {
+                    [*first, *second] = *target;
+                }
+            }
+            return;
+        }
+        // some lanes at once, each from where its targets lie beside each other; of lanes that are not there the last one's
+        for lanes in (0..width).step_by(BESIDE) {
+            let rows: [&[[f64; 2]]; BESIDE] = std::array::from_fn(|k| {
+                let lane = (lanes + k).min(width - 1);
+                &targets[shape.point(0, self.first + lane)..][..shape.count]
+            });
+            for (line, ordered) in ordered.iter_mut().enumerate() {
+                let [first, second] = ordered.each_mut().map(|target| &mut target[lanes..][..BESIDE]);
+                for k in 0..BESIDE {
+                    [first[k], second[k]] = rows[k][line];
                 }
             }
         }
@@ -145,11 +161,16 @@ impl Strip<'_> {
     }
 
     pub(super) fn is_line_of_roots(&self, line: usize) -> bool {
-        self.marks[line][..self.width].iter().all(|mark| mark.is_root())
+        self.are_all(line, Mark::is_root)
     }
 
     fn is_untouched(&self, line: usize) -> bool {
-        self.marks[line][..self.width].iter().all(|mark| *mark == Mark::Unknown)
+        self.are_all(line, |mark| mark == Mark::Unknown)
+    }
+
+    /// Without an end at the first one that is not meant: that is vectors.
+    fn are_all(&self, line: usize, is_meant: impl Fn(Mark) -> bool) -> bool {
+        self.marks[line][..self.width].iter().fold(true, |all, mark| all & is_meant(*mark))
     }
 
     pub(super) fn plane(&self, line: usize, plane: usize) -> &Lanes {
