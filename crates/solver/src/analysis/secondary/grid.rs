@@ -183,7 +183,9 @@ impl<'c> Judge<'c> {
             let mut place = |number: usize, value: f64| pose(number).map(|pose| pose.place(value, &position));
             let mut places: Vec<Place> =
                 values.iter().enumerate().filter_map(|(number, value)| place(number, *value)).collect();
-            if self.is_own && let Some(here) = place(usize::MAX, motions[running]) {
+            if self.is_own
+                && let Some(here) = place(usize::MAX, motions[running])
+            {
                 let after = places.partition_point(|place| place.motion < here.motion);
                 match places.get_mut(after) {
                     Some(place) if place.motion == here.motion => *place = here,
