@@ -17,13 +17,14 @@ const GEAR: [&str; 7] = [
     "machines/five_axis_table_table",
     "tools/end_mills",
 ];
-const CROWNED: [&str; 9] = [
+const CROWNED: [&str; 10] = [
     "functions/hobbing",
     "machines/hobbing_6axis",
     "machines/hobbing_geared",
     "machines/hobbing_3axis",
     "tools/involute",
     "tools/hob_zi",
+    "hobbing/helical_gear",
     "hobbing/crowned_gear",
     "machines/five_axis_table_table",
     "tools/end_mills",

@@ -200,9 +200,15 @@ fn linuxcnc_takes_no_orders_from_a_path() {
         return;
     }
     let out = folder("rs274_path");
-    let specs =
-        ["functions/bevel", "machines/cradle_tilt", "tools/face_mill", "functions/blanks_19x62", "bevel/thesis_gear"];
-    let job = support::self_contained(&specs);
+    let job = support::self_contained(&[
+        "functions/bevel",
+        "machines/cradle",
+        "machines/cradle_tilt",
+        "tools/face_mill",
+        "functions/blanks_19x62",
+        "bevel/gear_19x62",
+        "bevel/thesis_gear",
+    ]);
     let mut told = Vec::new();
     for words in ["plain ".repeat(12), "LOGOPEN,opened.txt ".repeat(12), "ABORT,no ".repeat(20), "PY,1 ".repeat(40)] {
         let named = out.join(&words);
@@ -210,7 +216,8 @@ fn linuxcnc_takes_no_orders_from_a_path() {
         let spec = support::written(&named, "thesis_gear.chain", &job);
         let arguments =
             ["convert", &spec, "--to", "specs/machines/free_form.chain", "--nc", "linuxcnc", "--time", "30"];
-        let run = flank(&[&arguments[..], &["--surface", "concave", "--out", out.to_str().unwrap()]].concat());
+        let of = ["--job", "thesis_gear", "--surface", "concave", "--out", out.to_str().unwrap()];
+        let run = flank(&[&arguments[..], &of].concat());
         assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
         let read = interpreted(&out, &out.join("thesis_gear_on_free_form.ngc"));
         told.push(read.lines().filter(|line| line.contains("STRAIGHT_FEED")).map(str::to_owned).collect::<Vec<_>>());
