@@ -93,7 +93,7 @@ fn run(arguments: &Arguments) -> Result<String, String> {
     let job = compilation.take_jobs(&[&arguments.job]).map_err(|_| format!("no job `{}`", arguments.job))?.remove(0);
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().ok_or("the job asks for no points")?;
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let is_curved = arguments.job == "grid";
     let new = if is_curved { SurfaceProblem::with_curvatures } else { SurfaceProblem::new };

@@ -33,7 +33,7 @@ fn tape_of(text: &str) -> usize {
     let mut instructions = 0;
     for surface in &job.surfaces {
         let sample = surface.sample.as_ref().expect("a sample");
-        let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+        let coordinates = sample.functions();
         let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
         let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
             .expect("all bound");

@@ -21,7 +21,7 @@ fn flank_tape() -> Tape {
     let job = &compilation.jobs[0];
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().expect("a sample");
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
         .expect("all bound");

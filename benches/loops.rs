@@ -32,7 +32,7 @@ fn flank(job: &str, side: usize) -> (SurfaceProblem, Vec<[f64; 2]>, [usize; 2]) 
     let job = compilation.jobs.iter().find(|known| known.name == job).expect("a job of the text");
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().expect("a sample");
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
         .expect("all bound");

@@ -38,7 +38,7 @@ impl Flank {
         let SampleGrid::Shares { corners, .. } = &sample.grid else { panic!("an outline") };
         let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
         let bound = BoundSurface::new(&surface.surface, ranges, &job.bindings());
-        let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+        let coordinates = sample.functions();
         Flank {
             problem: SurfaceProblem::new(&bound, coordinates).expect("nothing is unbound"),
             frames: SurfaceFrames::new(&bound, coordinates).expect("nothing is unbound"),

@@ -128,7 +128,7 @@ fn the_language_stands_alone() {
 /// The points that a surface is asked for.
 fn solved(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Vec<SurfacePoint> {
     let Some(sample) = &surface.sample else { return Vec::new() };
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     problem(job, surface, coordinates).solve(&sample.targets(), sample.counts).0
 }
 

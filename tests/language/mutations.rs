@@ -51,7 +51,7 @@ fn survive(text: &str) -> bool {
             let Some(sample) = &surface.sample else {
                 continue;
             };
-            let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+            let coordinates = sample.functions();
             let problem = problem(job, surface, coordinates);
             let few = &sample.targets()[..sample.targets().len().min(3)];
             let (points, _) = problem.solve(few, [few.len(), 1]);

@@ -200,7 +200,7 @@ pub fn problem<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, coordinates: [
 pub fn sampled(job: &Job<'_>, surface: &str) -> Vec<SurfacePoint> {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let sample = surface.sample.as_ref().expect("points are asked for");
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     problem(job, surface, coordinates).solve(&sample.targets(), sample.counts).0
 }
 

@@ -25,7 +25,7 @@ impl Resampled {
     /// listed one by one stay what they are; `None` where no points are asked for.
     fn new(spec: &str, job: &Job<'_>, surface: &GeneratedSurface<'_>, side: usize) -> Option<Resampled> {
         let sample = surface.sample.as_ref()?;
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
         let bound = BoundSurface::new(&surface.surface, ranges, &job.bindings());
         let beyond = surface.unknowns.iter().zip(bound.ranges()).map(|(unknown, range)| match unknown.is_count {

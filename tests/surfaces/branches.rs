@@ -9,7 +9,7 @@ use flank_tests::{difference, job, problem};
 fn anchors(job: &Job<'_>) -> Vec<(String, Roots)> {
     let sampled = job.surfaces.iter().filter_map(|surface| Some((surface, surface.sample.as_ref()?)));
     let anchor = sampled.map(|(surface, sample)| {
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let middle = (sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2;
         (surface.name.clone(), problem(job, surface, coordinates).all_points(sample.targets()[middle]))
     });
@@ -42,7 +42,7 @@ fn a_root_is_alone_where_it_is_said_to_be() {
     let target = sample.targets()[(sample.counts[0] / 2) * sample.counts[1] + sample.counts[1] / 2];
     let around = root.solution.unknowns.iter().zip(&root.alone_within);
     let ranges = around.map(|(x, radius)| Range { low: x - radius, high: x + radius }).collect();
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     let near = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
         .expect("all bound");
     let found = near.all_points(target);
@@ -57,7 +57,7 @@ fn several_branches_are_listed_and_none_is_taken() {
     let job = job(&graph, "specs/hobbing/helical_gear.chain", &[]);
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().expect("it is sampled");
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     let ranges = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let unsaid = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
         .expect("all bound");
@@ -79,7 +79,7 @@ fn pinion_points(graph: &Graph) -> (SurfaceProblem, Vec<[f64; 2]>, Vec<SurfacePo
     let job = job(graph, "specs/bevel/pinion_19x62.chain", &[]);
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().expect("it is sampled");
-    let problem = problem(&job, surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
+    let problem = problem(&job, surface, sample.functions());
     let corner = |i: usize, j: usize| sample.targets()[i * sample.counts[1] + j];
     let (last, end) = (sample.counts[0] - 1, sample.counts[1] - 1);
     let [a, b, c, d] = [corner(0, 0), corner(0, end), corner(last, 0), corner(last, end)];

@@ -306,7 +306,7 @@ fn many_points_at_once_bend_as_one_by_one() {
         let job = job(&graph, spec, &[]);
         for surface in job.surfaces.iter().filter(|surface| surface.sample.is_some()) {
             let sample = surface.sample.as_ref().expect("it has one");
-            let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+            let coordinates = sample.functions();
             let bound = bound(&job, surface);
             let problem = SurfaceProblem::with_curvatures(&bound, coordinates);
             let problem = problem.expect("nothing is unbound");

@@ -155,7 +155,7 @@ fn surfaces_of_the_library() {
         let job = job(&graph, spec, &[]);
         let generated = job.surfaces.iter().find(|s| s.name == surface).expect("it is there");
         let sample = generated.sample.as_ref().expect("points are asked for");
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let (solved, _) = problem(&job, generated, coordinates).solve(&sample.targets(), sample.counts);
         let unknowns: Vec<Vec<f64>> = (0..5).map(|k| solved[(solved.len() - 1) * k / 4].unknowns.clone()).collect();
         for (at, point) in unknowns.iter().zip(evaluated(&job, surface, &unknowns)) {

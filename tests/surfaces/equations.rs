@@ -36,7 +36,7 @@ fn check(graph: &Graph, job: &Job<'_>, surface: &GeneratedSurface<'_>, target: [
     let size = point.position.iter().fold(1000.0, |size: f64, x| size.max(x.abs()));
     let residuals = graph.evaluate(&surface.surface.constraints, &at);
     assert!(difference(&residuals, &vec![0.0; residuals.len()]) <= 2e-14 * size, "{residuals:?}, {what}");
-    let reached = graph.evaluate(&sample.coordinates.each_ref().map(|coordinate| coordinate.value), &at);
+    let reached = graph.evaluate(&sample.functions(), &at);
     assert!(difference(&reached, &target) <= 2e-14 * size, "{reached:?}, {what}");
     let parts: Vec<Expr<'_>> = surface.surface.position.0.into_iter().chain(surface.surface.normal.0).collect();
     let found = graph.evaluate(&parts, &at);

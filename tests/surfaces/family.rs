@@ -128,7 +128,7 @@ fn of_surface<'g>(
     let grid = sample.grid.picked(&lines);
     let targets: Vec<[f64; 2]> =
         (0..counts[0]).flat_map(|i| (0..counts[1]).map(move |j| (i, j))).map(|(i, j)| grid.at(i, j)).collect();
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     let ranges: Vec<Range> = surface.unknowns.iter().map(|of| Range { low: of.low, high: of.high }).collect();
     let bound = BoundSurface::new(&surface.surface, ranges, &job.bindings_beside(&variables));
     let keep: Vec<_> =

@@ -66,7 +66,7 @@ fn frames(job: &Job<'_>, surface: &GeneratedSurface<'_>, part: f64) -> Option<Ve
         rows.into_iter().flat_map(|p| columns.clone().into_iter().map(move |u| [p, u])).collect()
     };
     let at = |[p, u]: &[f64; 2]| [0, 1].map(|k| a[k] + p * steps[0][k] + u * steps[1][k]);
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let places: Vec<[f64; 2]> = shares.iter().map(at).collect();
     let (points, _): (Vec<SurfacePoint>, _) = problem(job, surface, coordinates).solve(&places, GRID);
     let found = SurfaceFrames::new(&bound(job, surface), coordinates).expect("nothing is unbound");

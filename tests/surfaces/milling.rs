@@ -138,7 +138,7 @@ fn flank(job: &Job<'_>, name: &str, [t, s]: [[f64; 2]; 2]) -> Vec<SurfaceFrame> 
     let flank_chain_dsl::SampleGrid::Shares { corners, .. } = &sample.grid else { panic!("an outline") };
     let ranges = surface.unknowns.iter().map(|unknown| Range { low: unknown.low, high: unknown.high }).collect();
     let bound = BoundSurface::new(&surface.surface, ranges, &job.bindings());
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let problem = SurfaceProblem::new(&bound, coordinates).expect("nothing is unbound");
     let mixed = |t: f64, s: f64| {
         let [tr, hr, tt, ht] = *corners;

@@ -44,7 +44,7 @@ fn points_in_range_are_solved_wherever_the_middle_is() {
     let job = job_of_text(&graph, PLANED);
     let surface = &job.surfaces[0];
     let sample = surface.sample.as_ref().expect("it is sampled");
-    let problem = problem(&job, surface, sample.coordinates.each_ref().map(|coordinate| coordinate.value));
+    let problem = problem(&job, surface, sample.functions());
     for fineness in [1, 3] {
         let counts = sample.counts.map(|count| fineness * (count - 1) + 1);
         let share = |k: usize, count: usize| k as f64 / (count - 1) as f64;

@@ -16,7 +16,7 @@ fn targets(job: &Job<'_>, surface: &str) -> Vec<[f64; 2]> {
 fn solved_near(job: &Job<'_>, surface: &str, targets: &[[f64; 2]], near: &[Vec<f64>], what: &str) -> Vec<SurfacePoint> {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let sample = surface.sample.as_ref().expect("points are asked for");
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let one = |(target, near): (&[f64; 2], &Vec<f64>)| {
         let around = surface.unknowns.iter().zip(near);
         let around = around.map(|(unknown, at)| (at, 0.02 * (unknown.high - unknown.low)));

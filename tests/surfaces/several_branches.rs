@@ -10,7 +10,7 @@ use flank_tests::{difference, problem, repository};
 fn solved(job: &Job<'_>, surface: &str) -> (Vec<SurfacePoint>, GridReport) {
     let surface = job.surfaces.iter().find(|s| s.name == surface).expect("the surface is in the job");
     let sample = surface.sample.as_ref().expect("points are asked for");
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     problem(job, surface, coordinates).solve(&sample.targets(), sample.counts)
 }
 

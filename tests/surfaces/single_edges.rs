@@ -26,7 +26,7 @@ fn left(job: &Job<'_>, name: &str, points: &[SurfacePoint]) -> Vec<Option<Scallo
 fn sampled(job: &Job<'_>, name: &str) -> Vec<SurfacePoint> {
     let asked = surface(job, name);
     let sample = asked.sample.as_ref().expect("it is sampled");
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     problem(job, asked, coordinates).solve(&sample.targets(), sample.counts).0
 }
 

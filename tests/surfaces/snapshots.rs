@@ -32,7 +32,7 @@ fn described_job(job: &Job<'_>) -> String {
         let Some(sample) = &surface.sample else {
             continue;
         };
-        let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+        let coordinates = sample.functions();
         let problem = problem(job, surface, coordinates);
         let (points, effort) = problem.solve(&sample.targets(), sample.counts);
         let graph = surface.surface.position.0[0].graph();

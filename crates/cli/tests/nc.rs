@@ -77,7 +77,7 @@ fn machine<'g>(graph: &'g Graph, file: &str) -> Machine<'g> {
 fn flank_points(job: &Job<'_>) -> Vec<SurfacePoint> {
     let surface = job.surfaces.iter().find(|surface| surface.name == "concave").expect("it is in the job");
     let sample = surface.sample.as_ref().expect("points are asked for");
-    let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+    let coordinates = sample.functions();
     let ranges: Vec<Range> = surface.unknowns.iter().map(|u| Range { low: u.low, high: u.high }).collect();
     let problem = SurfaceProblem::new(&BoundSurface::new(&surface.surface, ranges, &job.bindings()), coordinates)
         .expect("all bound");

@@ -26,6 +26,13 @@ pub struct Sample<'g> {
     pub limits: Vec<PointRequirement<'g>>,
 }
 
+impl<'g> Sample<'g> {
+    /// The two functions that are given values, without their names.
+    pub fn functions(&self) -> [Expr<'g>; 2] {
+        self.coordinates.each_ref().map(|coordinate| coordinate.value)
+    }
+}
+
 /// A function of the unknowns that must lie between two ends at every point of a sample.
 #[derive(Clone, Debug)]
 pub struct PointRequirement<'g> {

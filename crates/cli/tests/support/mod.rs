@@ -1,6 +1,8 @@
 //! The binary and its files, for all tests of it.
 #![allow(dead_code, unreachable_pub)] // each test file uses its own part of it
 
+pub mod grids;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

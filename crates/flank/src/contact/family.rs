@@ -173,7 +173,7 @@ impl FlankNodes {
         let open: Vec<(Expr<'g>, f64)> = settings.iter().map(|of| (of.variable, of.value)).collect();
         let family = (!open.is_empty()).then(|| {
             let variables: Vec<Expr<'g>> = open.iter().map(|(variable, _)| *variable).collect();
-            let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+            let coordinates = sample.functions();
             let family = solve::family(surface, coordinates, (&open, &job.bindings_beside(&variables)), session);
             let targets = sample.targets();
             (family, places().map(|at| targets[at]).collect(), lines.each_ref().map(Vec::len))

@@ -17,7 +17,7 @@ pub(super) fn page_surface<'g>(
     let (machine, frame_index) = frame(job, &surface.frame);
     let (_, tool_frame) = frame(job, surface.generation.tool_frame());
     let made = &surface.surface;
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let conditions = made.clearance_minors();
     let curvatures = made.principal_curvatures(coordinates);
     let targets = ["target 1", "target 2"].map(|name| graph.variable(name));

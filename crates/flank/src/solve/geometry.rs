@@ -39,7 +39,7 @@ impl<'s> Described<'s> {
         sample: &'s Sample<'g>,
         points: usize,
     ) -> Described<'s> {
-        let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+        let coordinates = sample.functions();
         let motions = &surface.generation.motions;
         let geometry = SurfaceGeometry::new(&bound(job, surface), motions, coordinates)
             .expect("a job without errors leaves nothing unbound");

@@ -138,7 +138,7 @@ impl<'g> Found<'_, 'g> {
         let middle = self.points.get(self.points.len() / 2)?;
         (is_whole && is_alone).then(|| Branch {
             problem: Arc::clone(&self.problem),
-            coordinates: values(sample),
+            coordinates: sample.functions(),
             start: middle.unknowns.clone(),
         })
     }
@@ -170,7 +170,7 @@ pub(crate) fn points<'j, 'g>(
     wanted: SolveOptions,
 ) -> Found<'j, 'g> {
     let (of, session) = ((job, surface), wanted.session);
-    let coordinates = values(sample);
+    let coordinates = sample.functions();
     let solved = || as_solved(problem(job, surface, coordinates, session), sample);
     let mut trims = Vec::new();
     let found = if surface.trimmed_by.is_empty() {
@@ -195,7 +195,7 @@ pub(crate) fn solve_side_by_side<'g>(job: &Job<'g>, surfaces: &[&GeneratedSurfac
     let mut tools = secondary::tools_of(job, &judged.collect::<Vec<_>>()).into_iter();
     // expressions stay on the thread of their graph
     let asked = sampled().map(|(surface, sample)| {
-        let coordinates = values(sample);
+        let coordinates = sample.functions();
         let tool = if surface.trimmed_by.is_empty() { tools.next() } else { None };
         (problem(job, surface, coordinates, session), tool, (sample.targets(), sample.counts))
     });
@@ -224,7 +224,7 @@ pub(crate) fn untrimmed<'j, 'g>(
     sample: &Sample<'g>,
     session: Session<'_>,
 ) -> Found<'j, 'g> {
-    let coordinates = values(sample);
+    let coordinates = sample.functions();
     let solved = || as_solved(problem(job, surface, coordinates, session), sample);
     let FoundPoints { problem, points, effort, .. } = session.sample((job, surface), sample, SOLVED, solved);
     let positions = Positions::Unseen("all other positions");
@@ -239,7 +239,7 @@ pub(crate) fn points_of_branch<'g>(
     (sample, branch): (&Sample<'g>, &Branch<'g>),
     session: Session<'_>,
 ) -> Option<Vec<SurfacePoint>> {
-    let coordinates = values(sample);
+    let coordinates = sample.functions();
     let problem = match coordinates == branch.coordinates {
         true => Arc::clone(&branch.problem),
         false => Arc::new(problem(job, surface, coordinates, session)),
@@ -254,10 +254,6 @@ pub(crate) fn points_of_branch<'g>(
     }
     let found = FoundPoints { problem, points, effort, positions: None };
     Some(judged((job, surface), sample, found).points)
-}
-
-fn values<'g>(sample: &Sample<'g>) -> [Expr<'g>; 2] {
-    sample.coordinates.each_ref().map(|coordinate| coordinate.value)
 }
 
 /// What is asked of samples: their points as the equations have them, and without those that are cut away.
@@ -313,7 +309,7 @@ fn kept_out<'g>(
     let is_kept = |sample: &&Sample<'g>| !sample.keep.is_empty();
     let is_nothing = summary.solved() == 0 && effort.branches.is_empty();
     let Some(sample) = surface.sample.as_ref().filter(is_kept).filter(|_| is_nothing) else { return Vec::new() };
-    let coordinates = values(sample);
+    let coordinates = sample.functions();
     let problem = on_any_branch(job, surface, coordinates, session);
     let found = problem.all_points(effort.anchor);
     let found: Vec<Solution> = found.isolated.into_iter().map(|root| root.solution).chain(found.unproven).collect();

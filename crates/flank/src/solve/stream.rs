@@ -179,7 +179,7 @@ impl<'j, 'g> Streamed<'j, 'g> {
         wanted: SolveOptions<'j>,
     ) -> Streamed<'j, 'g> {
         let session = wanted.session;
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let axis = |k: usize| Axis { label: sample.labels[k].clone(), count: sample.counts[k] };
         let problem = problem(job, surface, coordinates, session);
         let has_numbers = numbers_of_all(surface, sample, wanted) > 0;

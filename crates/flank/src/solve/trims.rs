@@ -17,7 +17,7 @@ pub(crate) fn cut<'j, 'g>(
     points: &mut [SurfacePoint],
     (number, session): (usize, Session),
 ) -> Line<'j, 'g> {
-    let coordinates = [sample.coordinates[0].value, sample.coordinates[1].value];
+    let coordinates = sample.functions();
     let both = [surface, by].map(|surface| bound(job, surface));
     let trim = Trim { surfaces: both.each_ref(), coordinates, number };
     let points_of_by = |coordinates| problem(job, by, coordinates, session);

@@ -125,7 +125,7 @@ impl<'j, 'g> Tested<'j, 'g> {
         if let Some((.., known)) = self.lists.borrow().iter().find(|(of, places, _)| *of == index && *places == at) {
             return (sample, known.clone());
         }
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let problem = solve::problem(self.job, surface, coordinates, self.session).points_alone();
         let (points, _) = problem.solve(&at, [1, at.len()]);
         self.lists.borrow_mut().push((index, at, points.clone()));

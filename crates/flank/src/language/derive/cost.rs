@@ -11,7 +11,7 @@ impl SurfaceCost {
     /// None if no points are asked for.
     pub(super) fn of_surface(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Option<SurfaceCost> {
         let sample = surface.sample.as_ref()?;
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let is_motion = |unknown: &Expr<'_>| job.motions.iter().any(|motion| motion.variable == *unknown);
         let stages =
             surface.surface.unknowns.iter().map(|unknown| if is_motion(unknown) { 1 } else { 2 }).chain([2, 2]);

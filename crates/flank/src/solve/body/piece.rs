@@ -78,7 +78,7 @@ impl<'j, 'g> Piece<'j, 'g> {
             refused(solid, message, &[&format!("add `sample {name} {{ … }}`")])
         })?;
         let sample = thinned(sample);
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let problem = || problem(job, surface, coordinates, session);
         let piece = |known| {
             let surface = Cow::Borrowed(surface);

@@ -177,6 +177,8 @@ struct Before {
 #[derive(Clone)]
 struct WholeStep {
     free: Vec<bool>,
+    /// How many directions it uses.
+    used: usize,
     by: Vec<f64>,
 }
 
@@ -358,7 +360,7 @@ impl LeastSquares {
                 None => {
                     let is_whole = self.exact == 0 && damping == 0.0 && fixed.iter().flatten().all(|end| *end == 0.0);
                     let free = || fixed.iter().map(Option::is_none).collect();
-                    let whole = is_whole.then(|| WholeStep { free: free(), by: step.clone() });
+                    let whole = is_whole.then(|| WholeStep { free: free(), used, by: step.clone() });
                     let ahead = whole.as_ref().and_then(|whole| self.ahead(state, whole));
                     let step = self.stepped(state, &ahead.unwrap_or(step), decomposed.squares(used));
                     return Step { whole, ..step };
@@ -369,9 +371,10 @@ impl LeastSquares {
 
     /// Where much is left that no step takes away, each whole step leaves the same share of the one before, by how much the surface of the
     /// residuals bends: a step that goes as far as all of these together (Anderson's acceleration of depth one). `None` where the last two do not
-    /// tell that.
+    /// tell that, or are made of other directions.
     fn ahead(&self, state: &State, whole: &WholeStep) -> Option<Vec<f64>> {
-        let before = state.before.as_ref().filter(|before| before.whole.free == whole.free)?;
+        let is_alike = |before: &&Before| before.whole.free == whole.free && before.whole.used == whole.used;
+        let before = state.before.as_ref().filter(is_alike)?;
         let changed: Vec<f64> = whole.by.iter().zip(&before.whole.by).map(|(now, before)| now - before).collect();
         let along = |of: &[f64]| changed.iter().zip(of).map(|(a, b)| a * b).sum::<f64>();
         let share = along(&whole.by) / along(&changed);

@@ -212,7 +212,7 @@ impl<'o, 'g> Opened<'o, 'g> {
     fn curvature(&mut self, name: &str) -> Result<Option<CompiledNumbers>, Failure> {
         let (surface, sample) = (self.surface(name)?, sample_of(self.job, name)?);
         let Some(number) = self.sample(surface, None) else { return Ok(None) };
-        let coordinates = sample.coordinates.each_ref().map(|coordinate| coordinate.value);
+        let coordinates = sample.functions();
         let graph = surface.surface.position.0[0].graph();
         let geometry = graph.with_settings(&self.settings, || {
             SurfaceGeometry::new(&self.bound(surface), &surface.generation.motions, coordinates)
