@@ -63,8 +63,13 @@ try {
     await page.goto(`http://127.0.0.1:${port}/?folder=${encodeURIComponent(`${folder}/work`)}`);
     await page.waitForSelector(".monaco-workbench");
     say("the workbench is there");
-    await page.keyboard.press("Control+P");
-    await page.waitForSelector(".quick-input-widget input");
+    // the workbench may be there before it listens to keys
+    const asked = page.locator(".quick-input-widget input");
+    for (let left = 20; left > 0 && !(await asked.isVisible()); left--) {
+        await page.keyboard.press("Control+P");
+        await asked.waitFor({ timeout: 3_000 }).catch(() => {});
+    }
+    await asked.waitFor();
     await page.keyboard.type("lathe.chain");
     await page.waitForSelector(".quick-input-list .monaco-list-row");
     await page.keyboard.press("Enter");
