@@ -5,6 +5,7 @@ pub(crate) mod closure;
 pub(crate) mod implicit_surface;
 pub(crate) mod index;
 pub(crate) mod instance;
+pub(crate) mod items;
 pub(crate) mod machine;
 pub(crate) mod material_side;
 pub(crate) mod nc_word;

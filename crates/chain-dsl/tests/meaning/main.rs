@@ -5,10 +5,12 @@ mod cures;
 mod files;
 #[path = "../fixtures/mod.rs"]
 mod fixtures;
+mod formulas;
 mod hostile;
 mod index;
 mod models;
 mod profiles;
+mod variants;
 
 use flank_chain_dsl::{Code, Diagnostic, Severity, compile_text};
 use flank_expr::Graph;
