@@ -8,13 +8,10 @@
 // `--variant newton` eliminates Z by z and G by that combination and solves two equations for xi and tau, with the derivatives worked out on
 // paper. `--variant closed` knows that N is the same at all points: tau follows from M, xi from a quadratic equation, all once for a row;
 // each point is tested all the same.
-#include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <string>
-#include <vector>
+
+#include "peer.hpp"
 
 static const double degree = std::acos(-1.0) / 180, tolerance = 1e-11;
 static const int width = 10;  // xi, tau, spindle, feed, x, y, z, normal
@@ -139,30 +136,8 @@ static double closed(const Gear& g, int rows, int columns, double* points) {
 }
 
 int main(int count, char** words) {
-    int rows = 31, columns = 61, repetitions = 3;
-    std::string variant = "newton", out;
-    for (int k = 1; k + 1 < count; k += 2) {
-        std::string key = words[k];
-        if (key == "--variant") variant = words[k + 1];
-        if (key == "--n1") rows = std::atoi(words[k + 1]);
-        if (key == "--n2") columns = std::atoi(words[k + 1]);
-        if (key == "--reps") repetitions = std::atoi(words[k + 1]);
-        if (key == "--out") out = words[k + 1];
-    }
     Gear gear;
-    std::vector<double> points(width * (size_t)rows * columns);
-    std::printf("{\"cand\":\"peer-%s\",\"job\":\"helical\",\"solve_s\":[", variant.c_str());
-    double evaluations = 0;
-    for (int k = 0; k < repetitions; k++) {
-        auto start = std::chrono::steady_clock::now();
-        evaluations = (variant == "closed" ? closed : newton)(gear, rows, columns, points.data());
-        std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        std::printf("%s%.9f", k ? "," : "", time.count());
-    }
-    std::printf("],\"evals_per_pt\":%.3f}\n", evaluations / ((double)rows * columns));
-    if (!out.empty()) {
-        FILE* file = std::fopen(out.c_str(), "wb");
-        if (!file || std::fwrite(points.data(), 8, points.size(), file) != points.size()) return 1;
-        std::fclose(file);
-    }
+    return run_peer(count, words, "peer", "--variant", "newton", width, [&](const std::string& variant, int rows, int columns, double* points) {
+        return (variant == "closed" ? closed : newton)(gear, rows, columns, points);
+    });
 }

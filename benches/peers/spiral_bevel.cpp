@@ -4,13 +4,10 @@
 // In the bed's frame the cradle turns the cutter about e_z and the work turns by R(phi) about a through O. With P and N a point
 // of the cone and its normal, D = P - O:
 //   f = N . (e_z x P) - R' N . (a x D),  z = a . D,  rho = sqrt(D . D - z^2).
-#include <chrono>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <string>
-#include <vector>
+
+#include "peer.hpp"
 
 struct Vector {
     double x, y, z;
@@ -164,30 +161,8 @@ static double flank(const Machine& m, int rows, int columns, double* points) {
 }
 
 int main(int count, char** words) {
-    int rows = 31, columns = 61, repetitions = 3;
-    std::string job = "flank", out;
-    for (int k = 1; k + 1 < count; k += 2) {
-        std::string key = words[k];
-        if (key == "--job") job = words[k + 1];
-        if (key == "--n1") rows = std::atoi(words[k + 1]);
-        if (key == "--n2") columns = std::atoi(words[k + 1]);
-        if (key == "--reps") repetitions = std::atoi(words[k + 1]);
-        if (key == "--out") out = words[k + 1];
-    }
     Machine m;
-    std::vector<double> points(9 * (size_t)rows * columns);
-    std::printf("{\"cand\":\"peer\",\"solve_s\":[");
-    double evaluations = 0;
-    for (int k = 0; k < repetitions; k++) {
-        auto start = std::chrono::steady_clock::now();
-        evaluations = (job == "grid" ? grid : flank)(m, rows, columns, points.data());
-        std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-        std::printf("%s%.9f", k ? "," : "", time.count());
-    }
-    std::printf("],\"evals_per_pt\":%.3f}\n", evaluations / ((double)rows * columns));
-    if (!out.empty()) {
-        FILE* file = std::fopen(out.c_str(), "wb");
-        if (!file || std::fwrite(points.data(), 8, points.size(), file) != points.size()) return 1;
-        std::fclose(file);
-    }
+    return run_peer(count, words, "peer", "--job", "flank", 9, [&](const std::string& job, int rows, int columns, double* points) {
+        return (job == "grid" ? grid : flank)(m, rows, columns, points);
+    });
 }
