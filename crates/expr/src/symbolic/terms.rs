@@ -121,7 +121,7 @@ impl<'g> Sum<'g> {
             let (_, coefficient) = self.terms[sine];
             let mut k = 0..;
             self.terms.retain(|_| k.next().is_some_and(|k| k != sine && k != cosine));
-            add(&mut self.terms, rest, coefficient);
+            add(&mut self.terms, &rest.0, coefficient);
             self.terms.retain(|(_, coefficient)| !coefficient.is_rounding());
         }
         self.terms.iter().all(|(_, coefficient)| coefficient.value.is_finite()).then_some(self)
@@ -200,7 +200,7 @@ impl<'g> Sum<'g> {
                 (0, 1) => (&mut b, sine),
                 _ => return None,
             };
-            add(&mut part.terms, monomial.with(wave, 0), *coefficient);
+            add(&mut part.terms, &monomial.with(wave, 0).0, *coefficient);
         }
         Some((a, b))
     }
@@ -284,11 +284,7 @@ fn multiplied(a: &Terms, b: &Terms) -> Option<Terms> {
     for (left, c) in a {
         for (right, d) in b {
             left.times(right, &mut product);
-            let coefficient = Coefficient { value: c.value * d.value, size: c.size * d.size };
-            match place(&out, &product) {
-                Ok(at) => out[at].1 = out[at].1.plus(coefficient),
-                Err(at) => out.insert(at, (Monomial(Rc::from(&product[..])), coefficient)),
-            }
+            add(&mut out, &product, Coefficient { value: c.value * d.value, size: c.size * d.size });
         }
     }
     Some(out)
@@ -321,10 +317,10 @@ fn place(terms: &Terms, monomial: &[(NodeId, u32)]) -> Result<usize, usize> {
     terms.binary_search_by(|(own, _)| own.0[..].cmp(monomial))
 }
 
-fn add(terms: &mut Terms, monomial: Monomial, coefficient: Coefficient) {
-    match place(terms, &monomial.0) {
+fn add(terms: &mut Terms, monomial: &[(NodeId, u32)], coefficient: Coefficient) {
+    match place(terms, monomial) {
         Ok(at) => terms[at].1 = terms[at].1.plus(coefficient),
-        Err(at) => terms.insert(at, (monomial, coefficient)),
+        Err(at) => terms.insert(at, (Monomial(monomial.into()), coefficient)),
     }
 }
 

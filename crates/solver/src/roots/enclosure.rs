@@ -327,3 +327,58 @@ pub(crate) fn eliminate(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool
     }
     right.iter().all(|entry| entry.is_finite())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Numbers in ±2 from a linear congruence, every third one zero.
+    fn numbers() -> impl FnMut() -> f64 {
+        let (mut state, mut count) = (7u64, 0);
+        move || {
+            count += 1;
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            if count % 3 == 0 { 0.0 } else { (state >> 11) as f64 / (1u64 << 51) as f64 - 2.0 }
+        }
+    }
+
+    /// What is zero may be left out of a sum, as a factor or as a value: the ends stay the same bits.
+    #[test]
+    fn zeros_change_no_sum() {
+        let mut next = numbers();
+        for _ in 0..2000 {
+            let weights: Vec<f64> = (0..4).map(|_| next()).collect();
+            let ends: Vec<[f64; 2]> = (0..4).map(|_| [next(), next()]).collect();
+            let values: Vec<Interval> = ends.iter().map(|[a, b]| Interval::new(a.min(*b), a.max(*b))).collect();
+            let all = weights.iter().zip(&values).map(|(weight, value)| value.times(*weight));
+            let all = all.fold(Interval::point(0.0), |sum, term| sum + term);
+            let found = weighted(&weights, values.iter());
+            assert_eq!((found.lo, found.hi), (all.lo, all.hi), "{weights:?} {values:?}");
+        }
+        assert!(weighted(&[0.0, 1.0], [Interval::EMPTY, Interval::point(1.0)].iter()).is_empty());
+    }
+
+    /// No solution of a row is cut off, whatever is zero in it.
+    #[test]
+    fn a_row_keeps_its_solutions() {
+        let mut next = numbers();
+        let mut narrowed = 0;
+        for _ in 0..2000 {
+            let slopes: Vec<f64> = (0..3).map(|_| next()).collect();
+            let root: Vec<f64> = (0..3).map(|_| 0.4 * next()).collect();
+            let middle: Vec<f64> = root.iter().map(|x| x + 0.2 * next()).collect();
+            // of the row Σ slope · (x − root)
+            let value = slopes.iter().zip(&middle).zip(&root).fold(Interval::point(0.0), |sum, ((slope, m), x)| {
+                sum + Interval::point(*slope) * (Interval::point(*m) - Interval::point(*x))
+            });
+            let wide: Vec<Interval> =
+                slopes.iter().map(|slope| around(*slope, if *slope == 0.0 { 0.0 } else { 0.1 })).collect();
+            let whole: Vec<Interval> = middle.iter().map(|m| around(*m, 0.5)).collect();
+            let mut left = whole.clone();
+            assert!(narrow(&mut left, &middle, (value, &wide), None, &mut Vec::new()), "{slopes:?} {root:?}");
+            assert!(left.iter().zip(&root).all(|(x, root)| x.contains(*root)), "{slopes:?} {root:?} {left:?}");
+            narrowed += usize::from(left != whole);
+        }
+        assert!(narrowed > 500, "{narrowed}");
+    }
+}

@@ -179,13 +179,14 @@ impl<'c> Judge<'c> {
         let mut poses = self.poses.at_each(&wanted, running).into_iter();
         let way = |(point, motions): (&&SurfacePoint, &Vec<f64>)| {
             let position = Vector3::from(point.position);
-            let mut pose = |number: usize| self.fixed.get(number).copied().or_else(|| poses.next());
-            let mut place = |number: usize, value: f64| pose(number).map(|pose| pose.place(value, &position));
-            let mut places: Vec<Place> =
-                values.iter().enumerate().filter_map(|(number, value)| place(number, *value)).collect();
-            if self.is_own
-                && let Some(here) = place(usize::MAX, motions[running])
-            {
+            let mut next = || poses.next().expect("a pose for each place that was wanted");
+            let mut places: Vec<Place> = Vec::with_capacity(values.len() + 1);
+            for (number, value) in values.iter().enumerate() {
+                let pose = self.fixed.get(number).copied().unwrap_or_else(&mut next);
+                places.push(pose.place(*value, &position));
+            }
+            if self.is_own {
+                let here = next().place(motions[running], &position);
                 let after = places.partition_point(|place| place.motion < here.motion);
                 match places.get_mut(after) {
                     Some(place) if place.motion == here.motion => *place = here,
