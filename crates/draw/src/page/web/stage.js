@@ -126,6 +126,7 @@ export class Stage {
 
     /** The first of the objects under a place of the canvas, pixels. */
     under(x, y, objects) {
+        this.camera.updateMatrixWorld();
         const { width, height } = this.canvas.getBoundingClientRect();
         const place = new THREE.Vector2((2 * x) / width - 1, 1 - (2 * y) / height);
         const ray = new THREE.Raycaster();
@@ -137,6 +138,8 @@ export class Stage {
     /** Where a point of an object is on the canvas, pixels. */
     pixel(object, position) {
         this.scene.updateMatrixWorld(true);
+        // between two pictures the eye may have moved
+        this.camera.updateMatrixWorld();
         const { width, height } = this.canvas.getBoundingClientRect();
         const seen = object.localToWorld(new THREE.Vector3(...position)).project(this.camera);
         return [((1 + seen.x) / 2) * width, ((1 - seen.y) / 2) * height, seen.z];
