@@ -135,6 +135,47 @@ fn what_was_found_reads_well() {
     assert!(xml.contains("classname=\"first_gear\" name=\"error E0307\""), "{xml}");
 }
 
+/// A gear of four teeth at 80 deg is a worm: its transverse profiles are long spirals, its lines on cylinders wind around the axis.
+#[test]
+fn angles_of_a_worm_are_those_that_were_changed() {
+    let folder = folder("test_angles");
+    let mut worm = gear();
+    for (from, to) in [
+        ("teeth : count = 20\n    /// Right", "teeth : count = 4\n    /// Right"),
+        ("helix_angle : angle = 15 deg", "helix_angle : angle = 80 deg"),
+        ("half_width: 20 mm", "half_width: 60 mm"),
+        ("linear in -60 mm .. 60 mm", "linear in -300 mm .. 300 mm"),
+        ("roll : angle in -40 deg .. 40 deg", "roll : angle in -170 deg .. 170 deg"),
+    ] {
+        assert!(worm.contains(from), "{from}");
+        worm = worm.replace(from, to);
+    }
+    let job = worm.find("job first_helical_gear").expect("it is shipped");
+    worm.replace_range(job.., &worm[job..].replace("-10 mm .. 10 mm", "-2 mm .. 2 mm"));
+    written(&folder, "worm.chain", &worm);
+    assert_eq!(tested(&folder, "", &["--accept"]).status.code(), Some(0));
+    let changed = |from: &str, to: &str, angle: &str| -> Vec<f64> {
+        assert!(worm.contains(from), "{from}");
+        written(&folder, "worm.chain", &worm.replace(from, to));
+        let told = text(&tested(&folder, "", &[]).stdout);
+        let lines = told.lines().filter(|line| line.contains("first_helical_gear.flank_"));
+        let angles =
+            lines.filter_map(|line| line.split(&format!("{angle} angle ")).nth(1)?.split(' ').next()?.parse().ok());
+        angles.collect()
+    };
+    // less material at the tip on both sides; an involute is curved, so that on average over the profile it is 3 % less than at the reference
+    let both = changed("angle = 20 deg", "angle = 20.01 deg", "pressure");
+    assert!(both.len() == 2 && both.iter().all(|by| (by + 0.6).abs() < 0.03), "{both:?}");
+    // at the middle radius rho, with m_n z = 16 mm: tan(beta_rho) = 2 rho sin(beta) / (m_n z). Of four rows that are kept the way is that of
+    // the third, 4 % longer.
+    let both = changed("angle = 80 deg", "angle = 80.01 deg", "helix");
+    let beta = 80_f64.to_radians();
+    let radius = 16.0 / (2.0 * beta.cos()) + 1.0;
+    let there = |beta: f64| (radius * beta.sin() / 8.0).atan().to_degrees() * 60.0;
+    let by = there(beta + 0.01_f64.to_radians()) - there(beta);
+    assert!(both.len() == 2 && both.iter().all(|told| (told.abs() - by).abs() < 0.05 * by), "{both:?} instead of {by}");
+}
+
 #[test]
 fn snapshots_are_accepted_and_differ_in_words() {
     let folder = folder("test_snapshot");

@@ -12,6 +12,7 @@ use crate::solve::patch;
 use crate::testing::explain::{Moved, explained};
 use crate::testing::judge::{precise, significant};
 use crate::testing::points::{Tested, place};
+use crate::testing::snapshot::angles::turned;
 use crate::testing::snapshot::text::KeptSurface;
 
 /// Nine digits of some hundred millimetres end here, mm.
@@ -201,33 +202,11 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         }
     }
 
-    /// Slopes of what moved: pressure angle along the profile, helix angle along the tooth.
+    /// Slopes of what moved, as angles.
     fn angles(&self, by: &[Option<f64>]) -> String {
         let Some(of) = EaseOff::of_deviations(by, self.old.counts) else { return String::new() };
-        let labels = self.tested.surface(self.index).sample.as_ref().map(|sample| sample.labels.clone());
-        let [rows, columns] = self.old.counts;
-        let apart = |a: usize, b: usize| {
-            let (a, b) = (&self.old.points[a].position, &self.old.points[b].position);
-            (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
-        };
-        let lengths = [
-            apart(columns / 2, (rows - 1) * columns + columns / 2),
-            apart(rows / 2 * columns, rows / 2 * columns + columns - 1),
-        ];
-        let mut out = String::new();
-        for k in 0..2 {
-            let label = labels.as_ref().map_or("", |labels| labels[k].as_str());
-            let what = match label {
-                "rho" | "root -> tip" => "pressure angle",
-                "z" | "toe -> heel" => "helix angle",
-                _ => continue,
-            };
-            let arcmin = of.slopes[k].atan2(lengths[k]).to_degrees() * 60.0;
-            if arcmin.is_finite() && arcmin.abs() >= 5e-4 {
-                out += &format!(", {what} {}{} arcmin", if arcmin > 0.0 { "+" } else { "" }, significant(arcmin));
-            }
-        }
-        out
+        let sample = self.tested.surface(self.index).sample.as_ref();
+        sample.map_or(String::new(), |sample| turned(self.old, &sample.labels, of.slopes))
     }
 
     /// Whether unknowns are elsewhere at points that are the same.

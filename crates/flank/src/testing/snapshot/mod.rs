@@ -1,5 +1,6 @@
 //! What a spec derived once, as text beside it.
 
+mod angles;
 mod compare;
 mod text;
 
