@@ -68,6 +68,13 @@ await page.evaluate(() => (document.querySelector("#job").textContent = "a_job_w
 assert(await page.evaluate(() => document.documentElement.scrollWidth) <= 400, "a long name makes a narrow page wide");
 await page.screenshot({ path: `${folder}/${name}.narrow.png` });
 
+// opened on a telephone, all is seen at once
+await page.reload();
+await page.waitForSelector("body[data-ready]", { timeout: 60_000 });
+const opened = await distance();
+await page.evaluate(() => window.flank.open());
+assert(Math.abs((await distance()) - opened) < 1e-6 * opened, "a narrow page opens too near");
+
 assert.deepEqual(errors, []);
 await browser.close();
 console.log(JSON.stringify({ found }));

@@ -105,6 +105,9 @@ export class Stage {
     fit(objects, towards) {
         const sphere = this.ball(objects) ?? this.ball(this.frames);
         if (!sphere) return;
+        // the first picture is fitted before the observer has told its size
+        const { clientWidth: width, clientHeight: height } = this.canvas.parentElement;
+        if (width > 0 && height > 0) this.camera.aspect = width / height;
         const way = towards ?? this.camera.position.clone().sub(this.controls.target);
         const half = (Math.min(this.camera.fov, this.camera.fov * this.camera.aspect) * Math.PI) / 360;
         const distance = Math.max(sphere.radius, 1e-6) / Math.sin(half);
