@@ -2,6 +2,7 @@
 #![allow(dead_code, unreachable_pub)] // each test file uses its own part of it
 
 pub mod grids;
+pub mod studies;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
