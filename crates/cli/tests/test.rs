@@ -195,6 +195,14 @@ fn snapshots_are_accepted_and_differ_in_words() {
     assert!(told.contains("pressure angle") && told.contains("explained best by r.pressure_angle"), "{told}");
     assert!(folder.join("build/gear.moved.svg").exists(), "{}", text(&run.stderr));
 
+    // rows that are columns now give no angle the name of the other
+    let turned = gear()
+        .replace("rho: low .. high by 9, z: -10 mm .. 10 mm by 5", "z: -10 mm .. 10 mm by 5, rho: low .. high by 9");
+    assert_ne!(turned, gear());
+    written(&folder, "gear.chain", &turned.replace("angle = 20 deg", "angle = 20.01 deg"));
+    let told = text(&tested(&folder, "", &[]).stdout);
+    assert!(told.contains("its sample is by z and rho instead of") && !told.contains(" arcmin"), "{told}");
+
     // a sample of its own is no other branch: it says what is asked for otherwise
     for (sample, says) in [
         (gear().replace("by 5 }", "by 6 }"), "its sample is another one: 42 points of it are looked at instead of 35"),

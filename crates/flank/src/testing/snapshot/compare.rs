@@ -205,7 +205,10 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
     /// Slopes of what moved, as angles.
     fn angles(&self, by: &[Option<f64>]) -> String {
         let Some(of) = EaseOff::of_deviations(by, self.old.counts) else { return String::new() };
-        let sample = self.tested.surface(self.index).sample.as_ref();
+        // labels are not kept: those of today hold for the same coordinates
+        let is_same =
+            |sample: &&Sample<'_>| sample.coordinates.each_ref().map(|of| &of.name) == self.old.coordinates.each_ref();
+        let sample = self.tested.surface(self.index).sample.as_ref().filter(is_same);
         sample.map_or(String::new(), |sample| turned(self.old, &sample.labels, of.slopes))
     }
 
