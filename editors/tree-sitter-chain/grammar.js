@@ -144,7 +144,10 @@ module.exports = grammar({
     expected_value: ($) => seq(
       optional(seq($.path, ':')), $.expression, choice(seq('near', $.expression, 'within', $.expression), seq('in', $.range)),
     ),
-    expected_pose: ($) => seq($._name, 'in', $._name, 'near', repeat1($.transform), 'at', alias($._at, $.settings), 'within', $.expression),
+    expected_pose: ($) => seq(
+      $._name, 'in', $._name, 'near', repeat1($.transform), 'at', alias($._at, $.settings), 'within', $.expression,
+      optional(seq(',', $.expression)),
+    ),
     _at: ($) => seq('(', listed($.setting), ')'),
 
     range: ($) => seq($.expression, '..', $.expression),

@@ -60,7 +60,8 @@ pub use diagnostics::spelling::closest;
 pub use diagnostics::{Cure, Diagnostic, Note, Severity};
 pub use format::format;
 pub use job::expect::model::{
-    ContactNumber, DeviationNumber, Expectation, Expected, ExpectedError, PointColumn, PointSet, Quantity, SolidNumber,
+    ContactNumber, DeviationNumber, Expectation, Expected, ExpectedError, PointColumn, PointSet, PoseDifference,
+    PoseTolerance, Quantity, SolidNumber,
 };
 pub use job::sample::spaced;
 pub use load::files::{Buffers, Disk, Files, FolderEntry};

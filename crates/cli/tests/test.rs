@@ -135,6 +135,40 @@ fn what_was_found_reads_well() {
     assert!(xml.contains("classname=\"first_gear\" name=\"error E0307\""), "{xml}");
 }
 
+/// The origin and the turn of a frame are told apart, each with its unit, and what has no tolerance says so.
+#[test]
+fn a_pose_is_off_by_a_length_and_turned_by_an_angle() {
+    let folder = folder("test_pose");
+    let found = |near: &str, within: &str| {
+        let spec = format!(
+            "machine table {{
+                axis C : rotary
+                frame bed
+                frame work in bed = rotate_z(C)
+                expect work in bed near {near} at (C: 0 deg) within {within}
+            }}"
+        );
+        written(&folder, "table.chain", &spec);
+        let run = tested(&folder, "", &["table.chain"]);
+        (run.status.code(), text(&run.stdout))
+    };
+    let (code, told) = found("rotate_z(3 arcmin)", "1 um");
+    assert_eq!(code, Some(3), "{told}");
+    assert!(told.contains("\n    found: off by 0 um, turned by 0.05 deg\n"), "{told}");
+    assert!(told.contains("no tolerance is written for the turn, so only rounding is allowed, 0.001 arcsec"), "{told}");
+    let (code, told) = found("rotate_x(90 deg)", "1 mm, 1 deg");
+    assert_eq!(code, Some(3), "{told}");
+    assert!(told.contains("\n    found: off by 0 um, turned by 90 deg\n") && !told.contains("no tolerance"), "{told}");
+    let (code, told) = found("translate_x(2 um)", "1 deg");
+    assert_eq!(code, Some(3), "{told}");
+    assert!(told.contains("\n    found: off by 2 um, turned by 0 arcsec\n"), "{told}");
+    assert!(told.contains("no tolerance is written for the origin, so only rounding is allowed, 0.001 um"), "{told}");
+    let (code, told) = found("mirror_x()", "1 um, 180 deg");
+    assert_eq!(code, Some(3), "{told}");
+    assert!(told.contains("one of both poses is mirrored"), "{told}");
+    assert_eq!(found("rotate_z(3 arcmin) translate_x(2 um)", "3 um, 4 arcmin").0, Some(0));
+}
+
 /// A gear of four teeth at 80 deg is a worm: its transverse profiles are long spirals, its lines on cylinders wind around the axis.
 #[test]
 fn angles_of_a_worm_are_those_that_were_changed() {

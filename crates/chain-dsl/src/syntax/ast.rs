@@ -121,7 +121,7 @@ pub enum MachineStatement {
     Nc(NcWord),
     /// `require a < b, "…"`
     Require(Requirement),
-    /// `expect tool in work near translate(…) at (X: 10 mm) within 1 um`
+    /// `expect tool in work near translate(…) at (X: 10 mm) within 1 um, 1 arcsec`
     Expect(Expectation),
 }
 

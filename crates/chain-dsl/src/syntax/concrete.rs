@@ -212,15 +212,21 @@ fn function(pair: Pair<'_, Rule>) -> Part<'_> {
 fn one_row(pair: Pair<'_, Rule>) -> Part<'_> {
     let mut parts = inner(pair);
     let equals = parts.iter().position(|part| part.is("=")).map_or(parts.len(), |equals| equals + 1);
+    let row = with_commas(parts.split_off(equals));
+    parts.push(Part::node(Kind::Steps, row));
+    Part::node(Kind::Statement, parts)
+}
+
+/// Each part with the comma behind it.
+fn with_commas(parts: Vec<Part<'_>>) -> Vec<Part<'_>> {
     let mut row: Vec<Part> = Vec::new();
-    for part in parts.split_off(equals) {
+    for part in parts {
         match row.pop() {
             Some(before) if part.is(",") => row.push(Part::node(Kind::Element, vec![before, part])),
             before => row.extend(before.into_iter().chain([part])),
         }
     }
-    parts.push(Part::node(Kind::Steps, row));
-    Part::node(Kind::Statement, parts)
+    row
 }
 
 /// An expectation is one row; where it does not fit, its place and its tolerance stand on lines of their own.
@@ -233,7 +239,7 @@ fn expectation(pair: Pair<'_, Rule>) -> Part<'_> {
     }
     let mut behind = |word| parts.iter().position(|part| part.is(word)).map(|at| parts.split_off(at));
     let (tolerance, place) = (behind("within"), behind("at"));
-    let rows = [Some(parts), place, tolerance].into_iter().flatten();
+    let rows = [Some(parts), place, tolerance.map(with_commas)].into_iter().flatten();
     let rows = rows.map(|row| one_of(Kind::Statement, row)).collect();
     Part::node(Kind::Statement, vec![head, one_of(Kind::Steps, rows)])
 }

@@ -316,6 +316,10 @@ impl Writer {
         self.value();
         self.all(&[")", "within"]);
         self.value();
+        if self.random.one_in(2) {
+            self.put(",");
+            self.value();
+        }
     }
 
     fn expectation(&mut self) {

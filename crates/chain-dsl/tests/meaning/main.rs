@@ -9,6 +9,7 @@ mod formulas;
 mod hostile;
 mod index;
 mod models;
+mod poses;
 mod profiles;
 mod variants;
 

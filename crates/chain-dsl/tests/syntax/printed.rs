@@ -223,7 +223,7 @@ fn expectation(it: &Expectation) -> String {
             frame.node,
             reference.node,
             listed(at, argument),
-            expression(within)
+            listed(within, expression)
         ),
     }
 }

@@ -1,6 +1,6 @@
 //! Whether expectations hold.
 
-use flank_chain_dsl::{Dimension, Expected, Job, PointColumn, Quantity, Sample};
+use flank_chain_dsl::{Dimension, Expected, Job, PointColumn, PoseDifference, PoseTolerance, Quantity, Sample};
 use flank_export::Values;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, SurfacePoint};
@@ -56,8 +56,25 @@ pub(super) fn judged<'g>(known: &Known<'_, '_, 'g>, expected: &Expected<'g>) -> 
 }
 
 /// How far a frame of a machine may be off, and is.
-pub(super) fn of_pose(off: f64, within: f64) -> Verdict {
-    Verdict { holds: off <= within, found: format!("off by {}", precise(Dimension::LENGTH, off)), details: Vec::new() }
+pub(super) fn of_pose(off: PoseDifference, within: PoseTolerance) -> Verdict {
+    let distance = precise(Dimension::LENGTH, off.distance);
+    let found = match off.angle {
+        Some(angle) => format!("off by {distance}, turned by {}", precise(Dimension::ANGLE, angle)),
+        None => format!("off by {distance}, and of the other hand: one of both poses is mirrored"),
+    };
+    let exact = |what: &str, most: String, other: &str| {
+        format!("no tolerance is written for the {what}, so only rounding is allowed, {most}: add {other}")
+    };
+    let mut details = Vec::new();
+    if within.distance.is_none() && off.distance > PoseTolerance::EXACT_DISTANCE {
+        let most = precise(Dimension::LENGTH, PoseTolerance::EXACT_DISTANCE);
+        details.push(exact("origin", most, "a length, as in `within 1 um, 1 arcsec`"));
+    }
+    if within.angle.is_none() && off.angle.is_some_and(|angle| angle > PoseTolerance::EXACT_ANGLE) {
+        let most = precise(Dimension::ANGLE, PoseTolerance::EXACT_ANGLE);
+        details.push(exact("turn", most, "an angle, as in `within 1 um, 1 arcsec`"));
+    }
+    Verdict { holds: within.allows(off), found, details }
 }
 
 /// A value with its unit, small ones in small units.

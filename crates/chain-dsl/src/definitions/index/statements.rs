@@ -96,7 +96,7 @@ impl<'a> Names<'a> {
                     frames.iter().for_each(|frame| self.frame(frame, id));
                     transforms.iter().for_each(|call| self.call(call, &mut place));
                     self.settings(at, Some(id), &mut place);
-                    self.expression(within, &mut place);
+                    within.iter().for_each(|part| self.expression(part, &mut place));
                 }
                 Expected::On { machine, within } => {
                     self.on(machine, &mut place);

@@ -2,6 +2,7 @@
 
 mod machine;
 pub(crate) mod model;
+mod pose;
 mod quantities;
 mod table;
 
@@ -41,6 +42,16 @@ const CURVATURES: [&str; 4] = ["k1", "k2", "induced_k1", "induced_k2"];
 /// Reports something wrong with an expectation.
 fn wrong(context: &mut Context<'_>, span: Span, message: String, help: impl Into<String>) {
     context.report(Diagnostic::new(Code::Expectation, span, message).help(help));
+}
+
+/// A tolerance, unless nothing is within it.
+fn above_zero(context: &mut Context<'_>, within: f64, dimension: Dimension, span: Span) -> Option<f64> {
+    if within > 0.0 {
+        return Some(within);
+    }
+    let message = format!("a tolerance is above zero, this is {}", shown(within, dimension));
+    wrong(context, span, message, "say by how much the value may differ, such as `within 1 um`");
+    None
 }
 
 /// An expectation that holds whatever the surface is like; after an error, what it compares may only be missing.
@@ -109,12 +120,7 @@ impl<'g> Builder<'_, 'g> {
     fn tolerance(&self, context: &mut Context<'g>, written: &ast::Expression, dimension: Dimension) -> Option<f64> {
         let within = context.scalar(written, &self.scope, dimension, "the tolerance")?;
         let within = context.require_constant(within, written.span, "the tolerance")?;
-        if within > 0.0 {
-            return Some(within);
-        }
-        let message = format!("a tolerance is above zero, this is {}", shown(within, dimension));
-        wrong(context, written.span, message, "say by how much the value may differ, such as `within 1 um`");
-        None
+        above_zero(context, within, dimension, written.span)
     }
 
     /// A surface with a sample.

@@ -100,11 +100,42 @@ pub enum Expected<'g> {
     },
     /// A frame of a machine stands where it should.
     Pose {
-        /// How far its origin, and what lies 1 mm from it along its axes, is off at most, mm.
-        off: f64,
-        /// How far it may, mm.
-        within: f64,
+        /// How far it is off.
+        off: PoseDifference,
+        /// How far it may be off.
+        within: PoseTolerance,
     },
+}
+
+/// How a frame lies to where it should stand.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PoseDifference {
+    /// Between both origins, mm.
+    pub distance: f64,
+    /// Of the one rotation that takes one frame into the other, radians from 0 to π; nothing where one is a mirror image of the other.
+    pub angle: Option<f64>,
+}
+
+/// How far a frame may be off. Where no tolerance is written, the difference may be that of rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoseTolerance {
+    /// Between both origins, mm.
+    pub distance: Option<f64>,
+    /// Of the rotation, radians.
+    pub angle: Option<f64>,
+}
+
+impl PoseTolerance {
+    /// What counts as rounding between origins, mm: far above that of numbers of 100 m, far below what is made.
+    pub const EXACT_DISTANCE: f64 = 1e-6;
+    /// What counts as rounding of a rotation, radians: 0.001 arcsec moves a point 200 mm away by 1 nm.
+    pub const EXACT_ANGLE: f64 = std::f64::consts::PI / 648e6;
+
+    /// Whether a frame is off by no more.
+    pub fn allows(self, off: PoseDifference) -> bool {
+        off.distance <= self.distance.unwrap_or(PoseTolerance::EXACT_DISTANCE)
+            && off.angle.is_some_and(|angle| angle <= self.angle.unwrap_or(PoseTolerance::EXACT_ANGLE))
+    }
 }
 
 /// A column of a table of points.

@@ -59,7 +59,7 @@ pub enum Expected {
         /// Where it lies.
         range: Range,
     },
-    /// `tool in work near translate(…) at (X: 10 mm) within 1 um`: where a frame of a machine stands.
+    /// `tool in work near translate(…) at (X: 10 mm) within 1 um, 1 arcsec`: where a frame of a machine stands.
     Pose {
         /// The frame, and the one in which it stands.
         frames: [Name; 2],
@@ -67,8 +67,8 @@ pub enum Expected {
         transforms: Vec<Call>,
         /// Axes and settings with their values.
         at: Vec<Argument>,
-        /// How far it may be off: the position, or a point at that distance as the angle turns it.
-        within: Expression,
+        /// How far its origin may be off, and by how much it may be turned: a length, an angle, or both.
+        within: Vec<Expression>,
     },
 }
 
@@ -136,7 +136,7 @@ impl Expectation {
             Expected::Pose { transforms, at, within, .. } => {
                 parts.extend(transforms.iter().flat_map(|call| call.arguments.iter().map(|argument| &argument.value)));
                 parts.extend(at.iter().map(|argument| &argument.value));
-                parts.push(within);
+                parts.extend(within);
             }
         }
         parts.into_iter().for_each(|part| part.each(show));

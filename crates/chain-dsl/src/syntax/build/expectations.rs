@@ -57,7 +57,7 @@ impl Build<'_> {
                 let at = parts.required(Rule::settings);
                 let about = format!("{} in {} at {}", frames[0].node, frames[1].node, self.words(self.span(&at)));
                 let at = self.settings(at);
-                let within = self.expression(parts.required(Rule::expression));
+                let within = parts.all(Rule::expression).into_iter().map(|part| self.expression(part)).collect();
                 (Expected::Pose { frames, transforms, at, within }, about)
             }
             _ => self.expected_value(parts),
