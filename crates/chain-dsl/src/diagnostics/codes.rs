@@ -96,4 +96,5 @@ codes! {
     Sliding           = "W0004" Warning "with these values, a motion lets the tool slide within itself";
     EmptyFile         = "W0005" Warning "a file declares nothing";
     NeverFails        = "W0006" Warning "an expectation can never fail";
+    AngleProduct      = "W0007" Warning "an angle times an angle stands where an angle is wanted";
 }

@@ -15,6 +15,7 @@ use crate::diagnostics::spelling::closest;
 use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::limits;
 use crate::syntax::ast;
+use crate::values::angle_product::AngleProducts;
 use crate::values::dimension::Dimension;
 use crate::values::steel_side::SteelSide;
 use crate::values::table_files::Tables;
@@ -113,6 +114,7 @@ pub(crate) struct Context<'g> {
     pub(crate) call_depth: usize,
     /// Whose values are looked at: `job.m`.
     pub(crate) owner: Rc<str>,
+    pub(super) angle_products: AngleProducts<'g>,
     /// What names amount to.
     noted: Vec<NotedValue<'g>>,
 }
@@ -155,6 +157,7 @@ impl<'g> Context<'g> {
             sample_points: 0,
             call_depth: 0,
             owner: Rc::from(""),
+            angle_products: AngleProducts::default(),
             noted: Vec::new(),
         }
     }
@@ -435,7 +438,12 @@ impl<'g> Context<'g> {
     ) -> Option<Expr<'g>> {
         match value {
             Value::Poison => None,
-            Value::Scalar(expr, dimension) if wanted.accepts(*dimension) => Some(*expr),
+            Value::Scalar(expr, dimension) if wanted.accepts(*dimension) => {
+                if wanted == Dimension::ANGLE {
+                    self.warn_of_angle_product((*expr, *dimension));
+                }
+                Some(*expr)
+            }
             other => {
                 let wanted_text = Value::Scalar(self.graph.constant(0.0), wanted).described();
                 let message = format!("{what} must be {wanted_text}, this is {}", other.described());

@@ -36,11 +36,17 @@ impl<'g> Context<'g> {
             ExpressionKind::Index(vector, index) => self.index(vector, index, scope),
             ExpressionKind::Unary(operator, operand) => {
                 let value = self.evaluate(operand, scope);
-                self.unary(operator.node, value, operand.span)
+                let scalar = value.as_scalar();
+                let value = self.unary(operator.node, value, operand.span);
+                self.follow_negated_angle(scalar, &value);
+                value
             }
             ExpressionKind::Binary(operator, left, right) => {
                 let values = (self.evaluate(left, scope), self.evaluate(right, scope));
-                self.binary(operator.node, values, (left.span, right.span), operator.span)
+                let scalars = [values.0.as_scalar(), values.1.as_scalar()];
+                let value = self.binary(operator.node, values, (left.span, right.span), operator.span);
+                self.follow_angles(operator.node, [left, right], scalars, &value);
+                value
             }
             ExpressionKind::If(condition, yes, no) => self.conditional(condition, yes, no, scope),
             ExpressionKind::Bound(bound) => self.unbound(bound, expression.span),

@@ -1,5 +1,6 @@
 //! What expressions mean: values with dimensions, names in reach, functions, tables.
 
+pub(crate) mod angle_product;
 mod bound;
 pub(crate) mod context;
 pub(crate) mod dimension;

@@ -29,7 +29,7 @@ pub(crate) enum Value<'g> {
     Poison,
 }
 
-impl Value<'_> {
+impl<'g> Value<'g> {
     /// Number of values inside it.
     pub(crate) fn size(&self) -> usize {
         match self {
@@ -44,6 +44,14 @@ impl Value<'_> {
             Value::Scalar(_, dimension) => dimension.greatest_power(),
             Value::Vector(parts) => parts.iter().map(Value::greatest_power).max().unwrap_or(0),
             _ => 0,
+        }
+    }
+
+    /// The scalar that it is, with its dimension.
+    pub(crate) fn as_scalar(&self) -> Option<(Expr<'g>, Dimension)> {
+        match self {
+            Value::Scalar(expr, dimension) => Some((*expr, *dimension)),
+            _ => None,
         }
     }
 

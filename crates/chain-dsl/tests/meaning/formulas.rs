@@ -2,6 +2,7 @@
 
 use flank_expr::Graph;
 
+use crate::findings;
 use crate::models::{compiled, laws};
 
 #[test]
@@ -190,5 +191,36 @@ fn a_root_is_what_its_equation_gives() {
         near("root(x in 0 .. 1.5: x^2 - root(y in 0.1 .. 2: ln(y) - cos(turn) / 4)) * 1 mm", (turn.cos() / 8.0).exp());
         near("derivative(root(x in -2 .. 2: sinh(x) - turn), turn) * 1 mm", 1.0 / (1.0 + turn * turn).sqrt());
         near("integral(t in 0 deg .. turn: root(x in -5 .. 5: x - 2 * t)) * 1 mm", turn * turn);
+    }
+}
+
+/// What is a product of two angles by its own right: numbers, polynomials in an angle, angles per angle, products that are divided.
+#[test]
+fn products_of_angles_are_warned_of_only_where_they_are_slips() {
+    for formula in [
+        "turn - 0.5 * turn^2 + turn * turn * turn / 6",
+        "tilt * sin(turn) + turn",
+        "tilt * turn / 1 rad",
+        "turn + tilt / 1 rad * turn",
+        "turn / 1 rad * 1 deg",
+        "turn * 3 deg/rad",
+        "(cos(turn) * tilt^2 + tilt * turn) / 1 rad",
+        "asin(tilt * turn + 0.1 * cos(turn))",
+        "taylor(turn, [0 deg, 1, -0.2])",
+        "sqrt(tilt * turn)",
+    ] {
+        let text = format!(
+            "job j {{
+                param tilt : angle = 3 deg
+                machine m = lathe(height: 3 mm)
+                tool b = ball
+                mount b on m.slide
+                motion turn : angle in 1 deg .. 30 deg
+                drive m.C = {formula} + 0 * tilt
+                drive m.Z = 1 mm/rad * turn
+                surface s in m.work = envelope(b.face, over: turn)
+            }}"
+        );
+        assert_eq!(findings(&text), [], "{formula}");
     }
 }

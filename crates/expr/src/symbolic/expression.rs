@@ -1,6 +1,7 @@
 //! Expressions: handles into a graph, with the operations on them.
 
 use std::fmt;
+use std::hash::{Hash, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::symbolic::graph::{CurveId, Graph, Node, NodeId, VariableId};
@@ -22,6 +23,12 @@ impl PartialEq for Expr<'_> {
 }
 
 impl Eq for Expr<'_> {}
+
+impl Hash for Expr<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        self.id.hash(state);
+    }
+}
 
 impl fmt::Debug for Expr<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
