@@ -8,6 +8,8 @@ use crate::diagnostics::source::{Sources, Span};
 pub(crate) enum Rewriting {
     /// A value gets its unit.
     Unit(Span, &'static str),
+    /// A value is divided by one of a unit.
+    Per(Span, &'static str),
     /// Two places change their words.
     Exchange([Span; 2]),
     /// An entry leaves its list; nothing of a list of one.
@@ -42,6 +44,7 @@ impl Rewriting {
         let writing = |span: Span, text: String| Cure { title: format!("write `{text}`"), span, replacement: text };
         match self {
             Rewriting::Unit(span, unit) => Some(writing(*span, with_unit(text(*span), unit))),
+            Rewriting::Per(span, unit) => Some(writing(*span, per_unit(text(*span), unit))),
             Rewriting::Exchange([first, second]) => {
                 let between = Span { start: first.end, end: second.start, ..*first };
                 Some(writing(first.to(*second), [text(*second), text(between), text(*first)].concat()))
@@ -116,6 +119,26 @@ fn with_unit(text: &str, unit: &str) -> String {
     let is_number =
         text.trim_start_matches('-').chars().all(|letter| letter.is_ascii_digit() || ".eE".contains(letter));
     if is_number { format!("{text} {unit}") } else { format!("({text}) * 1 {unit}") }
+}
+
+/// `5 mm/rev`, `e * cos(g) / 1 rad`, `(a + b) / 1 rad`.
+fn per_unit(text: &str, unit: &str) -> String {
+    let is_literal = text.trim_start_matches('-').starts_with(|letter: char| letter.is_ascii_digit())
+        && text.ends_with(char::is_alphabetic)
+        && text.chars().all(|letter| letter.is_alphanumeric() || " .-".contains(letter));
+    if is_literal {
+        return format!("{text}/{unit}");
+    }
+    let mut depth = 0_usize;
+    let is_sum = text.char_indices().any(|(at, letter)| {
+        match letter {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0 && at > 0 && "+-".contains(letter)
+    });
+    if is_sum || text.starts_with("if ") { format!("({text}) / 1 {unit}") } else { format!("{text} / 1 {unit}") }
 }
 
 /// An entry of a list with the comma behind it, or else the one before it.

@@ -16,7 +16,7 @@ use crate::diagnostics::{Diagnostic, Note, Severity};
 use crate::limits;
 use crate::syntax::ast;
 use crate::values::angle_product::AngleProducts;
-use crate::values::dimension::Dimension;
+use crate::values::dimension::{Dimension, shown};
 use crate::values::steel_side::SteelSide;
 use crate::values::table_files::Tables;
 use crate::values::value::{Constant, Value};
@@ -447,11 +447,7 @@ impl<'g> Context<'g> {
             other => {
                 let wanted_text = Value::Scalar(self.graph.constant(0.0), wanted).described();
                 let message = format!("{what} must be {wanted_text}, this is {}", other.described());
-                let mut diagnostic = Diagnostic::new(Code::WrongDimension, span, message);
-                if let Some((help, unit)) = unit_help(wanted, other) {
-                    diagnostic = diagnostic.help(help).rewriting(Rewriting::Unit(span, unit));
-                }
-                self.report(diagnostic);
+                self.report(with_unit_help(Diagnostic::new(Code::WrongDimension, span, message), wanted, other));
                 None
             }
         }
@@ -519,21 +515,35 @@ impl<'g> Context<'g> {
     }
 }
 
-/// What to write where a plain number stands for an angle or a length, and the unit.
-fn unit_help(wanted: Dimension, found: &Value<'_>) -> Option<(String, &'static str)> {
-    let Value::Scalar(expr, Dimension::NUMBER) = found else {
-        return None;
-    };
-    let unit = match wanted {
-        Dimension::ANGLE => "deg",
-        Dimension::LENGTH => "mm",
-        _ => return None,
-    };
-    Some(match expr.as_constant() {
-        Some(value) => (format!("give it a unit: `{value} {unit}`"), unit),
-        None if wanted == Dimension::ANGLE => ("a number of radians becomes an angle by `* 1 rad`".to_string(), "rad"),
-        None => (format!("a number of millimetres becomes a length by `* 1 {unit}`"), unit),
-    })
+/// Says what to write where a plain number stands for an angle or a length, and either for a length per angle.
+fn with_unit_help(diagnostic: Diagnostic, wanted: Dimension, found: &Value<'_>) -> Diagnostic {
+    const LEAD: Dimension = Dimension { length: 1, angle: -1 };
+    let Value::Scalar(expr, dimension) = found else { return diagnostic };
+    let (value, span) = (expr.as_constant(), diagnostic.span);
+    match (wanted, *dimension) {
+        (LEAD, Dimension::NUMBER | Dimension::LENGTH) => {
+            let help = match value.map(|value| shown(value, Dimension::LENGTH)) {
+                Some(value) => format!("say for which angle: `{value}/rev` a turn, or `{value}/rad` a radian"),
+                None => "say for which angle: a length becomes a lead by `/ 1 rev`, a turn, or `/ 1 rad`".to_string(),
+            };
+            let per: fn(Span, [&'static str; 2]) -> Rewriting = match *dimension {
+                Dimension::LENGTH => |span, [_, angle]| Rewriting::Per(span, angle),
+                _ => |span, [both, _]| Rewriting::Unit(span, both),
+            };
+            let units = [["mm/rev", "rev"], ["mm/rad", "rad"]];
+            units.into_iter().fold(diagnostic.help(help), |diagnostic, unit| diagnostic.rewriting(per(span, unit)))
+        }
+        (Dimension::ANGLE | Dimension::LENGTH, Dimension::NUMBER) => {
+            let (help, unit) = match (value, wanted) {
+                (Some(value), Dimension::ANGLE) => (format!("give it a unit: `{value} deg`"), "deg"),
+                (Some(value), _) => (format!("give it a unit: `{value} mm`"), "mm"),
+                (None, Dimension::ANGLE) => ("a number of radians becomes an angle by `* 1 rad`".to_string(), "rad"),
+                (None, _) => ("a number of millimetres becomes a length by `* 1 mm`".to_string(), "mm"),
+            };
+            diagnostic.help(help).rewriting(Rewriting::Unit(span, unit))
+        }
+        _ => diagnostic,
+    }
 }
 
 /// A finding about a name with the nearest of the known ones, or all of them.

@@ -318,14 +318,10 @@ impl<'g> Context<'g> {
         }
         let verb = if add { "add" } else { "subtract" };
         let message = format!("cannot {verb} {da} and {db}");
-        let mut diagnostic = Diagnostic::new(Code::WrongDimension, operator_span, message)
+        let diagnostic = Diagnostic::new(Code::WrongDimension, operator_span, message)
             .note(spans.0, Value::Scalar(a, da).described())
             .note(spans.1, Value::Scalar(b, db).described());
-        if let Some((help, unit, is_first)) = missing_unit((a, da), (b, db)) {
-            diagnostic =
-                diagnostic.help(help).rewriting(Rewriting::Unit(if is_first { spans.0 } else { spans.1 }, unit));
-        }
-        self.report(diagnostic);
+        self.report(with_missing_unit(diagnostic, [(a, da, spans.0), (b, db, spans.1)]));
         Value::Poison
     }
 
@@ -376,12 +372,8 @@ impl<'g> Context<'g> {
     ) -> Value<'g> {
         if da.sum(db).is_none() {
             let message = format!("cannot compare {da} and {db}");
-            let mut diagnostic = Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message);
-            if let Some((help, unit, is_first)) = missing_unit((a, da), (b, db)) {
-                diagnostic =
-                    diagnostic.help(help).rewriting(Rewriting::Unit(if is_first { spans.0 } else { spans.1 }, unit));
-            }
-            self.report(diagnostic);
+            let diagnostic = Diagnostic::new(Code::WrongDimension, spans.0.to(spans.1), message);
+            self.report(with_missing_unit(diagnostic, [(a, da, spans.0), (b, db, spans.1)]));
             return Value::Poison;
         }
         for (side, span) in [(a, spans.0), (b, spans.1)] {
@@ -578,25 +570,28 @@ impl<'g> Context<'g> {
     }
 }
 
-/// What to write where a plain number meets a length or an angle, the unit, and whether the first of them is the number.
-fn missing_unit<'g>(
-    (a, da): (Expr<'g>, Dimension),
-    (b, db): (Expr<'g>, Dimension),
-) -> Option<(String, &'static str, bool)> {
-    let (number, other, is_first) = match (da, db) {
-        (Dimension::NUMBER, other) => (a, other, true),
-        (other, Dimension::NUMBER) => (b, other, false),
-        _ => return None,
-    };
-    let value = number.as_constant()?;
-    match other {
-        Dimension::LENGTH => Some((format!("give the number its unit: `{value} mm`"), "mm", is_first)),
-        Dimension::ANGLE => Some((
-            format!("give the number its unit (`{value} deg`), or make the angle a number by `/ 1 rad`"),
-            "deg",
-            is_first,
-        )),
-        _ => None,
+/// Says what to write where a plain number meets a length or an angle.
+fn with_missing_unit<'g>(diagnostic: Diagnostic, [a, b]: [(Expr<'g>, Dimension, Span); 2]) -> Diagnostic {
+    let (number, (other, dimension, place)) = if a.1 == Dimension::NUMBER { (a, b) } else { (b, a) };
+    let (Some(value), Dimension::NUMBER) = (number.0.as_constant(), number.1) else { return diagnostic };
+    match dimension {
+        Dimension::LENGTH => {
+            let help = format!("give the number its unit: `{value} mm`");
+            diagnostic.help(help).rewriting(Rewriting::Unit(number.2, "mm"))
+        }
+        Dimension::ANGLE => {
+            let [unit, number] = [Rewriting::Unit(number.2, "deg"), Rewriting::Per(place, "rad")];
+            // `20 + tilt` lacks a unit; `1 + e * cos(g)` is a number, and so is the angle in it
+            let is_value = other.as_variable().is_some() || other.as_constant().is_some();
+            if is_value && value.abs() != 1.0 {
+                let help = format!("give the number its unit (`{value} deg`), or make the angle a number by `/ 1 rad`");
+                diagnostic.help(help).rewriting(unit).rewriting(number)
+            } else {
+                let help = format!("make the angle a number by `/ 1 rad`, or give the number its unit (`{value} deg`)");
+                diagnostic.help(help).rewriting(number).rewriting(unit)
+            }
+        }
+        _ => diagnostic,
     }
 }
 
