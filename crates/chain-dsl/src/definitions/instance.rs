@@ -14,7 +14,7 @@ use crate::diagnostics::source::{Name, Span};
 use crate::model::{Parameter, RangedVariable, ValueSource};
 use crate::syntax::ast::{Argument, Dimension, Expression, ExpressionKind, Param};
 use crate::values::context::{Context, READABLE, Role, quoted};
-use crate::values::dimension::shown;
+use crate::values::dimension::{shown, shown_like};
 use crate::values::functions::plural;
 use crate::values::segment::Profile;
 use crate::values::value::{Constant, Scope, Value};
@@ -362,7 +362,8 @@ impl<'a, 'g> Binder<'a, 'g> {
         };
         let Some((low, high)) = context.range(range, scope, dimension, what) else { return Ok(None) };
         if value < low || value > high {
-            let [value, low, high] = [value, low, high].map(|value| shown(value, dimension));
+            let ends = [(value, &range.high), (low, &range.low), (high, &range.high)];
+            let [value, low, high] = ends.map(|(value, written)| shown_like(value, dimension, written));
             let message = format!("{what} is {value}, outside its range {low} .. {high}");
             let diagnostic =
                 Diagnostic::new(Code::OutOfRange, span, message).note(range.span, "the range is stated here");

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use crate::syntax::ast::{Expression, ExpressionKind};
+
 /// A product of powers of length and angle; all zero is a plain number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Dimension {
@@ -129,6 +131,24 @@ pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
         Dimension::LENGTH => format!("{} mm", without_noise(value)),
         Dimension { length: 1, angle: -1 } => format!("{} mm/rad", without_noise(value)),
         _ => without_noise(value).to_string(),
+    }
+}
+
+/// An inside value in the unit that an expression is written in: -1 arcmin where that is `-1 arcmin`.
+pub(crate) fn shown_like(value: f64, dimension: Dimension, written: &Expression) -> String {
+    let mut found = None;
+    written.each(&mut |part| {
+        if let ExpressionKind::Number(_, units) = &part.kind
+            && let [(unit, 1)] = &units[..]
+            && let Some((size, of)) = unit_size(&unit.node)
+            && of == dimension
+        {
+            found.get_or_insert((size, unit.node.as_str()));
+        }
+    });
+    match found {
+        Some((size, unit)) => format!("{} {unit}", without_noise(value / size)),
+        None => shown(value, dimension),
     }
 }
 

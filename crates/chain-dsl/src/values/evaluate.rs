@@ -140,7 +140,8 @@ impl<'g> Context<'g> {
     ) {
         let is_turned = low > high;
         let help = if is_turned { "put the smaller end first" } else { "give it two different ends" };
-        let [low, high] = [low, high].map(|value| dimension::shown(value, of));
+        let [low, high] =
+            [(low, &range.low), (high, &range.high)].map(|(end, written)| dimension::shown_like(end, of, written));
         let message = format!("the range of {what} is empty: {low} is not below {high}");
         let empty = Diagnostic::new(Code::EmptyRange, range.span, message).help(help);
         self.report(if is_turned {

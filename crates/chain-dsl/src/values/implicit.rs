@@ -5,9 +5,9 @@ use flank_expr::{Expr, Interval, NoRoot, Unknown, every_root, has_one_root, root
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
-use crate::syntax::ast::Call;
+use crate::syntax::ast::{Bound, Call};
 use crate::values::context::{Context, Role, Unranged};
-use crate::values::dimension::{Dimension, shown};
+use crate::values::dimension::{Dimension, shown, shown_like};
 use crate::values::value::{Scope, Value};
 
 /// Boxes that a proof takes in a common case: what it costs in steps.
@@ -81,7 +81,7 @@ impl<'g> Context<'g> {
                 self.rootless(bound.value.span, &format!("{what} has no range"), help)
             }
             Err(Unsolved::Several(place, branches)) => {
-                let [low, high] = [low, high].map(|end| shown(end, dimension));
+                let [low, high] = written_ends(bound, [low, high], dimension);
                 let why = format!("from {low} to {high}{place}, this is zero more than once");
                 let name = &bound.name.node;
                 let told = branches.iter().map(|branch| {
@@ -99,7 +99,7 @@ impl<'g> Context<'g> {
                 Value::Poison
             }
             Err(Unsolved::Not(why, place)) => {
-                let [low, high] = [low, high].map(|end| shown(end, dimension));
+                let [low, high] = written_ends(bound, [low, high], dimension);
                 let name = &bound.name.node;
                 let (why, help) = match why {
                     NoRoot::None(_) => (format!("nowhere from {low} to {high}{place} is this zero"), "widen the range"),
@@ -219,6 +219,12 @@ fn between(one: f64, other: f64, dimension: Dimension) -> f64 {
         .map(|scale| (middle * scale).round() / scale)
         .find(|rounded| (rounded - middle).abs() <= room)
         .unwrap_or(middle)
+}
+
+/// The ends of a range, each in the unit that it is written in.
+fn written_ends(bound: &Bound, ends: [f64; 2], dimension: Dimension) -> [String; 2] {
+    let written = [&bound.range.low, &bound.range.high];
+    [0, 1].map(|k| shown_like(ends[k], dimension, written[k]))
 }
 
 /// With three decimals.
