@@ -129,6 +129,12 @@ impl<'g> Builder<'_, 'g> {
         if self.surfaces[index].0.sample.is_some() {
             return Some(index);
         }
+        let is_of = |sampled: &ast::Sampled| sampled.name.is_none() && sampled.surface.joined() == path.joined();
+        let is_sample = |statement: &JobStatement| matches!(statement, JobStatement::Sample(sample) if sample.surfaces.iter().any(is_of));
+        // one that could not be made has been reported
+        if job.statements.iter().any(is_sample) && context.has_errors() {
+            return None;
+        }
         let message = format!("`{}` is not sampled: nothing says at which points it is expected", path.joined());
         let help = format!("add `sample {} {{ … }}`", path.joined());
         let mut diagnostic = Diagnostic::new(Code::Expectation, path.span, message).help(help);
@@ -287,7 +293,7 @@ impl<'g> Builder<'_, 'g> {
             }
             return Some(Expected::AtPoints { surface, value, known, dimension, ends, is_difference: true });
         }
-        if let Some(surface) = self.as_surface(value) {
+        if let Some(surface) = self.as_surface(value, job) {
             return self.surface_near(context, (surface, target, within), span, job);
         }
         let mut named = Named { scope: self.scope.clone(), list: Vec::new() };
@@ -301,11 +307,12 @@ impl<'g> Builder<'_, 'g> {
         self.value(context, (value, [target - within, target + within]), dimension, named, span)
     }
 
-    /// The path of a surface of the job, declared or built.
-    fn as_surface<'e>(&self, value: &'e ast::Expression) -> Option<&'e ast::Path> {
+    /// The path of a surface of the job, built, or declared and wrong.
+    fn as_surface<'e>(&self, value: &'e ast::Expression, job: &ast::Job) -> Option<&'e ast::Path> {
         let ExpressionKind::Path(path) = &value.kind else { return None };
         let owner = &path.segments[0].node;
-        let is_one = self.surfaces.iter().any(|(surface, _)| super::available::is_of(&surface.name, owner));
+        let is_one = self.surfaces.iter().any(|(surface, _)| super::available::is_of(&surface.name, owner))
+            || super::declared(job).any(|name| name == owner);
         (is_one && !self.scope.contains_key(&path.joined())).then_some(path)
     }
 
