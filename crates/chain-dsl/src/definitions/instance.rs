@@ -13,7 +13,7 @@ use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::model::{Parameter, RangedVariable, ValueSource};
 use crate::syntax::ast::{Argument, Dimension, Expression, ExpressionKind, Param};
-use crate::values::context::{Context, READABLE, Role, quoted};
+use crate::values::context::{Context, READABLE, Role};
 use crate::values::dimension::{shown, shown_like};
 use crate::values::functions::plural;
 use crate::values::segment::Profile;
@@ -396,7 +396,8 @@ impl<'a, 'g> Binder<'a, 'g> {
                 let unknown = unknown.filter(|name| !known.contains(name.node.as_str())).count();
                 // a misspelt setting is one mistake, not also a missing one
                 if names.len() > unknown {
-                    let message = format!("`{}` needs {}", name.node, quoted(&names));
+                    let missing = params.iter().filter(|param| names.contains(&param.name.node.as_str())).copied();
+                    let message = format!("`{}` needs {}", name.node, with_dimensions(context, missing));
                     let help =
                         format!("give the value{}: `{definition}({}: …)`", plural(names.len()), names.join(": …, "));
                     let mut diagnostic = Diagnostic::new(Code::MissingValue, name.span, message).help(help);
@@ -407,7 +408,7 @@ impl<'a, 'g> Binder<'a, 'g> {
                     }
                     context.report(diagnostic);
                 }
-                check_settings(context, settings, &known);
+                check_settings(context, settings, params);
             }
         }
     }
@@ -506,13 +507,31 @@ pub(crate) fn is_profile(dimension: &Dimension) -> bool {
     matches!(dimension.factors.as_slice(), [(name, _)] if name.node == "profile")
 }
 
-fn check_settings(context: &mut Context<'_>, settings: &[Argument], known: &HashSet<&str>) {
+/// `radius` (length), `teeth` (count)
+fn with_dimensions<'p>(context: &mut Context<'_>, params: impl Iterator<Item = &'p Param>) -> String {
+    let each = params.map(|param| {
+        let of = match &param.dimension {
+            dimension if is_count(dimension) => "count".to_string(),
+            dimension if is_profile(dimension) => "profile".to_string(),
+            dimension => context.dimension(dimension).map_or(String::new(), |of| of.to_string()),
+        };
+        format!("`{}` ({of})", param.name.node)
+    });
+    each.collect::<Vec<_>>().join(", ")
+}
+
+fn check_settings(context: &mut Context<'_>, settings: &[Argument], params: &[&Param]) {
+    let known: HashSet<&str> = params.iter().map(|param| param.name.node.as_str()).collect();
     let mut seen: HashMap<&str, Span> = HashMap::new();
     for setting in settings {
         match &setting.name {
             None => {
                 let message = "a setting has a name: `name: value`";
-                context.report(Diagnostic::new(Code::WrongArguments, setting.value.span, message));
+                let nameless = Diagnostic::new(Code::WrongArguments, setting.value.span, message);
+                let few = (1..=READABLE).contains(&params.len());
+                let settings =
+                    few.then(|| format!("its settings are {}", with_dimensions(context, params.iter().copied())));
+                context.report(Diagnostic { help: settings, ..nameless });
             }
             Some(name) if !known.contains(name.node.as_str()) => {
                 context.unknown(name, "setting", known.iter().copied());

@@ -81,13 +81,13 @@ impl Items {
                 let Some(parent) = &job.extends else {
                     return self.jobs.push(JobItem { file, job: job.clone(), made_from: Vec::new() });
                 };
-                self.add_made(context, file, (&job.name, parent), |context, machines, parent| {
-                    variant::extended(context, machines, job, parent)
+                self.add_made(context, file, (&job.name, parent), |context, definitions, parent| {
+                    variant::extended(context, definitions, job, parent)
                 });
             }
             Item::Variant(variant) => {
-                self.add_made(context, file, (&variant.name, &variant.parent), |context, machines, parent| {
-                    variant::expanded(context, machines, variant, parent)
+                self.add_made(context, file, (&variant.name, &variant.parent), |context, definitions, parent| {
+                    variant::expanded(context, definitions, variant, parent)
                 });
             }
         }
@@ -99,7 +99,7 @@ impl Items {
         context: &mut Context<'g>,
         file: FileId,
         (name, parent): (&Name, &Name),
-        make: impl FnOnce(&mut Context<'g>, &Machines, &ast::Job) -> ast::Job,
+        make: impl FnOnce(&mut Context<'g>, (&Machines, &Tools), &ast::Job) -> ast::Job,
     ) {
         /// Bytes of a job that cost as much as a step of evaluation: what is made of it is a copy.
         const BYTES_A_STEP: usize = 2;
@@ -118,7 +118,7 @@ impl Items {
         let made_from: Vec<Span> = made_from.iter().copied().chain([found.span]).collect();
         let bytes: usize = made_from.iter().map(|span| (span.end - span.start) as usize).sum();
         if context.spend(bytes / BYTES_A_STEP, name.span) {
-            let job = make(context, &self.machines, found);
+            let job = make(context, (&self.machines, &self.tools), found);
             self.jobs.push(JobItem { file, job, made_from });
         }
     }

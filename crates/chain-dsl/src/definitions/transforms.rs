@@ -34,6 +34,19 @@ pub(crate) fn names() -> &'static [&'static str] {
     &NAMES
 }
 
+/// What a transform takes, in words.
+fn taken(name: &str) -> &'static str {
+    match name {
+        "translate" => "three lengths, or one vector of them",
+        "translate_x" | "translate_y" | "translate_z" => "a length",
+        "rotate_x" | "rotate_y" | "rotate_z" => "an angle",
+        "rotate" => "an axis [x, y, z] and an angle",
+        "screw" => "an axis [x, y, z], an angle, and a length per angle",
+        "matrix" => "three rows [r, r, r, t]",
+        _ => "an axis [x, y, z]",
+    }
+}
+
 const AXES: [Axis<'static>; 3] = [Axis::X, Axis::Y, Axis::Z];
 
 /// An explicit matrix may deviate this much from a rotation: it is written with finitely many digits.
@@ -65,7 +78,7 @@ fn step<'g>(context: &mut Context<'g>, call: &Call, scope: &Scope<'g>) -> Option
     let written: Vec<&Expression> = call.arguments.iter().map(|argument| &argument.value).collect();
     if call.arguments.len() != count || call.arguments.iter().any(|argument| argument.name.is_some()) {
         // the same words as for any other function
-        functions::arguments(context, call, count, scope);
+        functions::arguments(context, call, count, scope, |_| format!("it takes {}", taken(name)));
         return None;
     }
     let along = |axis: usize, by: Expr<'g>| {

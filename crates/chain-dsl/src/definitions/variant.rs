@@ -4,14 +4,23 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::definitions::machine::{Machines, axes_with_laws};
+use crate::definitions::tool::Tools;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::syntax::ast::{Argument, Change, Expected, ExpressionKind, Instance, Job, JobStatement, Subject, Variant};
+use crate::syntax::ast::{
+    Argument, Change, Expected, ExpressionKind, Instance, Job, JobStatement, MachineStatement, Subject, ToolStatement,
+    Variant,
+};
 use crate::values::context::{Context, suggesting};
 
 /// The job that a variant of an earlier one stands for.
-pub(crate) fn expanded(context: &mut Context<'_>, machines: &Machines, variant: &Variant, parent: &Job) -> Job {
-    let mut job = changed(context, machines, &variant.changes, parent);
+pub(crate) fn expanded(
+    context: &mut Context<'_>,
+    definitions: (&Machines, &Tools),
+    variant: &Variant,
+    parent: &Job,
+) -> Job {
+    let mut job = changed(context, definitions, &variant.changes, parent);
     job.name = variant.name.clone();
     if !variant.doc.is_empty() {
         job.doc = variant.doc.clone();
@@ -19,7 +28,7 @@ pub(crate) fn expanded(context: &mut Context<'_>, machines: &Machines, variant: 
     job
 }
 
-fn changed(context: &mut Context<'_>, machines: &Machines, changes: &[Change], parent: &Job) -> Job {
+fn changed(context: &mut Context<'_>, (machines, tools): (&Machines, &Tools), changes: &[Change], parent: &Job) -> Job {
     let mut job = parent.clone();
     for (k, change) in changes.iter().enumerate() {
         let same = |earlier: &&Change| names(earlier).eq(names(change));
@@ -29,7 +38,7 @@ fn changed(context: &mut Context<'_>, machines: &Machines, changes: &[Change], p
                 let twice = Diagnostic::new(Code::DuplicateName, change.target.span, message);
                 context.report(twice.note(first.target.span, "first here"));
             }
-            None => drop(made(context, &mut job, change, &parent.name.node)),
+            None => drop(made(context, (machines, tools), &mut job, (change, &parent.name.node))),
         }
     }
     let is_another =
@@ -40,8 +49,13 @@ fn changed(context: &mut Context<'_>, machines: &Machines, changes: &[Change], p
 
 /// A job with the statements of the earlier one that it extends, in which values and parts may be changed: one of its own that is about the
 /// same takes the place of one of those. Others come before the next one that does, or at the end.
-pub(crate) fn extended(context: &mut Context<'_>, machines: &Machines, job: &Job, parent: &Job) -> Job {
-    let parent = without_replaced(changed(context, machines, &job.changes, parent), job);
+pub(crate) fn extended(
+    context: &mut Context<'_>,
+    (machines, tools): (&Machines, &Tools),
+    job: &Job,
+    parent: &Job,
+) -> Job {
+    let parent = without_replaced(changed(context, (machines, tools), &job.changes, parent), job);
     let parent = without_laws(context, machines, parent, &machines_of(job).collect::<Vec<_>>());
     let mut places: HashMap<(Subject, String), usize> = HashMap::new();
     for (place, statement) in parent.statements.iter().enumerate() {
@@ -119,9 +133,15 @@ fn names(change: &Change) -> impl Iterator<Item = &str> {
 }
 
 /// Makes one change; nothing if there is nothing to change, which is reported.
-fn made(context: &mut Context<'_>, job: &mut Job, change: &Change, parent: &str) -> Option<()> {
+fn made(
+    context: &mut Context<'_>,
+    definitions: (&Machines, &Tools),
+    job: &mut Job,
+    (change, parent): (&Change, &str),
+) -> Option<()> {
     let (name, rest) = change.target.segments.split_first()?;
     let known: Vec<String> = job.statements.iter().filter_map(changeable).map(str::to_string).collect();
+    let of_parts = settings_called(&name.node, job, definitions);
     let statement = job.statements.iter_mut().find(|statement| changeable(statement) == Some(&name.node));
     match (statement, rest) {
         (Some(JobStatement::Param(param)), []) => param.default = Some(change.value.clone()),
@@ -135,7 +155,15 @@ fn made(context: &mut Context<'_>, job: &mut Job, change: &Change, parent: &str)
         (None, _) => {
             let message = format!("job `{parent}` has no parameter, machine or tool `{}`", name.node);
             let diagnostic = Diagnostic::new(Code::UnknownName, name.span, message);
-            context.report(suggesting(diagnostic, name, known.iter().map(String::as_str)));
+            let written: Vec<String> = of_parts.iter().map(|setting| format!("`{setting}`")).collect();
+            context.report(if written.is_empty() || !rest.is_empty() {
+                suggesting(diagnostic, name, known.iter().map(String::as_str))
+            } else {
+                let meant = diagnostic.help(format!("did you mean {}?", written.join(" or ")));
+                of_parts
+                    .iter()
+                    .fold(meant, |meant, setting| meant.cure(format!("write `{setting}`"), name.span, setting))
+            });
         }
         _ => {
             let message = format!("`{}` has no settings of its own", name.node);
@@ -144,6 +172,38 @@ fn made(context: &mut Context<'_>, job: &mut Job, change: &Change, parent: &str)
         }
     }
     Some(())
+}
+
+/// The settings of a job's machines and tools that are called so: `b.radius`.
+fn settings_called(name: &str, job: &Job, (machines, tools): (&Machines, &Tools)) -> Vec<String> {
+    let of_machine = |definition: &str| {
+        let mut next = machines.get(definition);
+        // machines may extend each other in a circle
+        for _ in 0..machines.len() {
+            let Some(machine) = next else { return false };
+            let is_called = |statement: &MachineStatement| matches!(statement, MachineStatement::Param(param) if param.name.node == name);
+            if machine.statements.iter().any(is_called) {
+                return true;
+            }
+            next = machine.extends.as_ref().and_then(|parent| machines.get(&parent.node));
+        }
+        false
+    };
+    let of_tool = |definition: &str| {
+        let is_called =
+            |statement: &ToolStatement| matches!(statement, ToolStatement::Param(param) if param.name.node == name);
+        tools.get(definition).is_some_and(|tool| tool.statements.iter().any(is_called))
+    };
+    let has_it = |statement: &JobStatement| match statement {
+        JobStatement::Machine(instance) if of_machine(&instance.definition.node) => {
+            Some(format!("{}.{name}", instance.name.node))
+        }
+        JobStatement::Tool(instance) if of_tool(&instance.definition.node) => {
+            Some(format!("{}.{name}", instance.name.node))
+        }
+        _ => None,
+    };
+    job.statements.iter().filter_map(has_it).collect()
 }
 
 /// The name of what a variant can change.

@@ -250,7 +250,8 @@ impl<'g> Builder<'_, 'g> {
                 };
                 if !value.is_finite() {
                     let what = format!("the law of `{}.{}`", machine.name, axis.name);
-                    context.not_finite(value, self.place_of_law(index, &axis.name), &what);
+                    let place = self.place_of_law(index, &axis.name);
+                    context.not_finite(value, Some(axis.law), place, &what);
                     self.unsettled.insert(index);
                 }
             }

@@ -118,7 +118,11 @@ impl<'g> Context<'g> {
 
     /// `derivative(value, variable)`
     pub(super) fn derivative(&mut self, call: &Call, scope: &Scope<'g>) -> Value<'g> {
-        let Some(arguments) = functions::arguments(self, call, 2, scope) else { return Value::Poison };
+        let Some(arguments) = functions::arguments(self, call, 2, scope, |_| {
+            "it takes a value and the variable by which it is derived".to_string()
+        }) else {
+            return Value::Poison;
+        };
         let [(value, written), (by, by_written)] = arguments.as_slice() else { return Value::Poison };
         let (by, dimension) = match by {
             Value::Poison => return Value::Poison,

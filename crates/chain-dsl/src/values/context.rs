@@ -329,6 +329,13 @@ impl<'g> Context<'g> {
         }
     }
 
+    /// Says what to write in those findings, from a number of them on, that do not.
+    pub(crate) fn help_since(&mut self, first: usize, help: &str) {
+        for diagnostic in self.diagnostics[first..].iter_mut().filter(|diagnostic| diagnostic.help.is_none()) {
+            diagnostic.help = Some(help.to_string());
+        }
+    }
+
     /// The variables that expressions depend on.
     pub(crate) fn variables_of(&self, exprs: &[Expr<'g>]) -> Vec<Expr<'g>> {
         self.graph.variables_of(exprs).into_iter().map(|variable| self.variables[variable.index()]).collect()
@@ -406,7 +413,7 @@ impl<'g> Context<'g> {
         match self.constant(expr) {
             Constant::Known(value) if value.is_finite() => Some(value),
             Constant::Known(value) => {
-                self.not_finite(value, span, what);
+                self.not_finite(value, Some(expr), span, what);
                 None
             }
             Constant::Unknown => None,
@@ -418,14 +425,25 @@ impl<'g> Context<'g> {
         }
     }
 
-    /// Reports a value that is no number, or infinite.
-    pub(crate) fn not_finite(&mut self, value: f64, span: Span, what: impl fmt::Display) {
+    /// Reports the value of an expression that is no number, or infinite.
+    pub(crate) fn not_finite(&mut self, value: f64, of: Option<Expr<'g>>, span: Span, what: impl fmt::Display) {
         let (reason, help) = if value.is_nan() {
             ("cannot be computed", "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0")
         } else {
             ("is infinite", "look for a division by zero, or a value that grows too large")
         };
+        let divisor = of.and_then(|expr| self.zero_divisor(expr));
+        let help = divisor.map_or(help.to_string(), |divisor| format!("it is divided by `{divisor}`, which is zero"));
         self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
+    }
+
+    /// What an expression divides by that is zero, in the words of the text; nothing where that is not short.
+    fn zero_divisor(&self, expr: Expr<'g>) -> Option<String> {
+        const SHORT: usize = 12;
+        let is_zero =
+            |divisor: &Expr<'g>| matches!(self.constant_kept(*divisor), Constant::Known(value) if value == 0.0);
+        let found = self.graph.divisors(expr).into_iter().find(is_zero)?;
+        (found.as_constant().is_none() && self.graph.size(&[found]) <= SHORT).then(|| found.to_string())
     }
 
     /// A scalar of the wanted dimension, or `None` with the reason reported.

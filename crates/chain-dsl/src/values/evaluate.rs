@@ -181,7 +181,7 @@ impl<'g> Context<'g> {
             product = product.times(base.power(*exponent));
         }
         if !number.is_finite() {
-            self.not_finite(number, span, "this number");
+            self.not_finite(number, None, span, "this number");
             return Value::Poison;
         }
         Value::Scalar(self.graph.constant(number), product)
@@ -468,14 +468,19 @@ impl<'g> Context<'g> {
             call.arguments.iter().for_each(|argument| drop(self.evaluate(&argument.value, scope)));
             return Value::Poison;
         }
-        let Some(arguments) = functions::arguments(self, call, function.arguments.len(), scope) else {
+        let count = function.arguments.len();
+        let taken = |context: &mut Context<'g>| functions::parameters(context, &function);
+        let Some(arguments) = functions::arguments(self, call, count, scope, taken) else {
             return Value::Poison;
         };
         let mut inner = Scope::new();
         let mut own = Vec::new();
         for ((value, given), (name, written)) in arguments.into_iter().zip(&function.arguments) {
             let what = format_args!("`{}` of `{}`", name.node, function.name.node);
+            let findings = self.findings();
             let Some(value) = self.of_type(&value, written, given, what) else {
+                let taken = functions::parameters(self, &function);
+                self.help_since(findings, &taken);
                 return Value::Poison;
             };
             let value = match value {
@@ -500,7 +505,10 @@ impl<'g> Context<'g> {
         (curve, x, y): (CurveId, Dimension, Dimension),
         scope: &Scope<'g>,
     ) -> Value<'g> {
-        let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
+        let Some(arguments) = functions::arguments(self, call, 1, scope, |_| format!("it takes {} {x}", article(x)))
+        else {
+            return Value::Poison;
+        };
         let what = format_args!("the argument of `{}`", call.function.node);
         match self.require(&arguments[0].0, x, arguments[0].1.span, what) {
             Some(at) => Value::Scalar(at.on_curve(curve, 0), y),
@@ -510,7 +518,11 @@ impl<'g> Context<'g> {
 
     /// The point of a profile in a surface along it.
     fn on_segment(&mut self, call: &ast::Call, segment: &Segment<'g>, scope: &Scope<'g>) -> Value<'g> {
-        let Some(arguments) = functions::arguments(self, call, 1, scope) else { return Value::Poison };
+        let Some(arguments) =
+            functions::arguments(self, call, 1, scope, |_| "it takes a length, the run along it".to_string())
+        else {
+            return Value::Poison;
+        };
         let what = format_args!("the argument of `{}`", call.function.node);
         match self.require(&arguments[0].0, Dimension::LENGTH, arguments[0].1.span, what) {
             Some(run) => Value::Vector(segment.point(run).map(|x| Value::Scalar(x, Dimension::LENGTH)).into()),

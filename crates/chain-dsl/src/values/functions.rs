@@ -38,6 +38,34 @@ enum Function {
     Norm,
 }
 
+impl Function {
+    /// What it takes, in words.
+    fn taken(self) -> String {
+        let what = match self {
+            Function::OfAngle(_) | Function::Involute => "an angle",
+            Function::ToAngle(_) | Function::OfNumber(_) | Function::ArcInvolute => "a number",
+            Function::Abs | Function::Sqrt => "a number, a length or an angle",
+            Function::Choice(_) | Function::Hypot => "two values of one dimension",
+            Function::Atan2 => "`y` and `x` of one dimension",
+            Function::Poly | Function::Taylor => "a variable and a list of coefficients",
+            Function::Dot | Function::Cross => "two vectors of 3",
+            Function::Norm => "a vector of 3",
+        };
+        format!("it takes {what}")
+    }
+}
+
+/// What a function of the user takes, in words: `turn`, an angle, and so on.
+pub(crate) fn parameters(context: &mut Context<'_>, function: &ast::Function) -> String {
+    let mut each = Vec::new();
+    for (name, written) in &function.arguments {
+        let dimension = context.dimension(&written.dimension).map_or(String::new(), |found| found.to_string());
+        let size = written.size.map_or(String::new(), |size| format!("[{size}]"));
+        each.push(format!("`{}` ({dimension}{size})", name.node));
+    }
+    format!("it takes {}", each.join(", "))
+}
+
 const FUNCTIONS: [(&str, usize, Function); 27] = [
     ("sin", 1, Function::OfAngle(Unary::Sin)),
     ("cos", 1, Function::OfAngle(Unary::Cos)),
@@ -79,17 +107,20 @@ pub(crate) fn names() -> impl Iterator<Item = &'static str> {
 /// A value and what it is written as.
 pub(crate) type Argument<'a, 'g> = (Value<'g>, &'a ast::Expression);
 
-/// The arguments of a call that takes `count` of them by position.
+/// The arguments of a call that takes `count` of them by position; `taken` says which, where they are not so many.
 pub(crate) fn arguments<'a, 'g>(
     context: &mut Context<'g>,
     call: &'a ast::Call,
     count: usize,
     scope: &Scope<'g>,
+    taken: impl FnOnce(&mut Context<'g>) -> String,
 ) -> Option<Vec<Argument<'a, 'g>>> {
     let name = &call.function.node;
     if call.arguments.len() != count {
         let message = format!("`{name}` takes {count} argument{}, not {}", plural(count), call.arguments.len());
-        context.report(Diagnostic::new(Code::WrongArguments, call.span, message));
+        let wrong = Diagnostic::new(Code::WrongArguments, call.span, message);
+        let taken = taken(context);
+        context.report(if count > 0 { wrong.help(taken) } else { wrong });
         return None;
     }
     if let Some(named) = call.arguments.iter().find_map(|argument| argument.name.as_ref()) {
@@ -115,7 +146,7 @@ pub(crate) fn call<'g>(context: &mut Context<'g>, call: &ast::Call, scope: &Scop
         context.unknown_item(&call.function, "function", known.into_iter());
         return Value::Poison;
     };
-    let Some(arguments) = arguments(context, call, *count, scope) else {
+    let Some(arguments) = arguments(context, call, *count, scope, |_| function.taken()) else {
         return Value::Poison;
     };
     if arguments.iter().any(|(value, _)| matches!(value, Value::Poison)) {

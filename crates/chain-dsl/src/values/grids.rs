@@ -184,7 +184,10 @@ impl Arranged {
 impl<'g> Context<'g> {
     /// The value of a grid at two parameters: a number, or a vector of as many as it has columns with values.
     pub(super) fn on_grid(&mut self, call: &Call, grid: &Grid, scope: &Scope<'g>) -> Value<'g> {
-        let Some(arguments) = functions::arguments(self, call, 2, scope) else { return Value::Poison };
+        let Some(arguments) = functions::arguments(self, call, 2, scope, |_| "it takes its two parameters".to_string())
+        else {
+            return Value::Poison;
+        };
         let what = format!("the argument of `{}`", call.function.node);
         let at = [0, 1].map(|side| {
             let (value, written) = &arguments[side];

@@ -1,6 +1,7 @@
 //! Walks through a graph: what expressions are made of, each node once, after what it is made of.
 
 use crate::symbolic::graph::{Expr, Graph, Node, NodeId, VariableId};
+use crate::symbolic::op::Binary;
 
 /// What an unknown that equations give, or an integral, is taken for on a walk through the graph.
 #[derive(Clone, Copy)]
@@ -212,6 +213,18 @@ impl Graph {
         let found = self.reachable([root.id]);
         let variables = found.iter().filter_map(|id| self.expr(*id).as_variable()).collect();
         (found.len(), variables)
+    }
+
+    /// What an expression divides by anywhere in it, each once, what is part of others before them.
+    pub fn divisors(&self, root: Expr<'_>) -> Vec<Expr<'_>> {
+        let divisor = |id: NodeId| match self.node(id) {
+            Node::Binary(Binary::Div, _, by) => Some(by),
+            _ => None,
+        };
+        let mut found: Vec<NodeId> = self.reachable([root.id]).into_iter().filter_map(divisor).collect();
+        found.sort_unstable();
+        found.dedup();
+        found.into_iter().map(|id| self.expr(id)).collect()
     }
 
     /// Nodes of the expressions when equal ones are shared.

@@ -14,7 +14,14 @@ impl Mistake<'_> {
         if let Some(diagnostic) = foreign(self.scan, self.found).filter(|_| self.found < self.range.end) {
             return Some(diagnostic);
         }
-        self.space().or_else(|| self.decimal()).or_else(|| self.sign())
+        self.space().or_else(|| self.decimal()).or_else(|| self.second_call()).or_else(|| self.sign())
+    }
+
+    /// `curve("ratio.csv", x: angle, y: length)(turn)`
+    fn second_call(&self) -> Option<Diagnostic> {
+        let is_called = self.before() == ")" && self.say() == "(" && self.touches(self.found) && !self.leads();
+        let help = "give it a name and call that: `let f = curve(…)`, then `f(x)`";
+        is_called.then(|| self.here("what a call gives cannot be called where it stands").help(help))
     }
 
     /// `sin (x)`, `v [0]`
@@ -93,6 +100,8 @@ impl Mistake<'_> {
                 "transforms stand side by side, without a sign between them"
             }
             ("/", "*") if self.touches(self.found) => block_comment(self.scan, self.found - 1)?,
+            (_, "angle" | "rotation") if wants(Rule::axis_kind) => "an axis that turns is `rotary`",
+            (_, "length" | "translation") if wants(Rule::axis_kind) => "an axis that slides is `linear`",
             (_, ",") if wants(Rule::EOI) => "a statement ends without a sign",
             _ => block_comment(self.scan, self.found)?,
         };
@@ -116,6 +125,8 @@ impl Mistake<'_> {
             }
             (_, "=", "values are compared with `==`") => ("write `==`", self.place(), "=="),
             (_, "==", _) => ("write `=`", self.place(), "="),
+            (_, "angle" | "rotation", _) => ("write `rotary`", self.place(), "rotary"),
+            (_, "length" | "translation", _) => ("write `linear`", self.place(), "linear"),
             (")", "*", _) => ("leave `*` out", self.place(), ""),
             (_, ",", _) => ("leave `,` out", self.place(), ""),
             (_, ".", _) if self.scan.is_name(self.found + 1) => {
