@@ -72,6 +72,6 @@ pub use model::{
     OutlineCurve, OutlineSegment, Parameter, PassSpacing, PieceEnds, PointRequirement, Process, RangedVariable, Sample,
     SampleEnds, SampleGrid, Solid, SolidForm, ToolShape, ValueSource, WantedContact,
 };
-pub use values::dimension::{Dimension, unit_size};
+pub use values::dimension::{Dimension, WrittenUnit, unit_size};
 pub use values::lone::lone_value;
 pub use values::steel_side::{OpenSide, SteelSide};

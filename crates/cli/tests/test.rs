@@ -135,6 +135,19 @@ fn what_was_found_reads_well() {
     assert!(xml.contains("classname=\"first_gear\" name=\"error E0307\""), "{xml}");
 }
 
+/// A travel is told in the unit that the machine has it in, and so is how far the axis goes.
+#[test]
+fn a_travel_is_told_in_its_own_unit() {
+    let folder = folder("test_travel");
+    let narrow = expecting("    expect travel\n").replace("linear in -60 mm .. 60 mm", "linear in -60000 um .. 500 um");
+    assert!(narrow.contains(" um .. "), "{narrow}");
+    written(&folder, "gear.chain", &narrow);
+    let run = tested(&folder, "", &["gear.chain"]);
+    assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+    let told = text(&run.stdout);
+    assert!(told.contains(" um, its travel is -60000.0000 to 500.0000 um"), "{told}");
+}
+
 /// The origin and the turn of a frame are told apart, each with its unit, and what has no tolerance says so.
 #[test]
 fn a_pose_is_off_by_a_length_and_turned_by_an_angle() {

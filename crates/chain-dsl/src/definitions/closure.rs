@@ -11,7 +11,7 @@ use crate::limits;
 use crate::model::{Frame, path};
 use crate::syntax::ast::{Close, KeptAxis};
 use crate::values::context::{Context, quoted};
-use crate::values::dimension::{Dimension, shown};
+use crate::values::dimension::{Dimension, shown_in};
 use crate::values::value::Scope;
 
 /// The axes of a frame.
@@ -237,7 +237,8 @@ fn keep<'g>(
         return (context.findings() == findings).then_some((place, Interval::WHOLE));
     };
     if let Some((from, to)) = axis.travel.filter(|(from, to)| high < *from || *to < low) {
-        let [from, to] = [from, to].map(|end| shown(end, axis.dimension.unwrap_or(Dimension::LENGTH)));
+        let dimension = axis.dimension.unwrap_or(Dimension::LENGTH);
+        let [from, to] = [from, to].map(|end| shown_in(end, dimension, axis.travel_unit.as_ref()));
         let message = format!("{what} is never there: it travels from {from} to {to}");
         context.report(Diagnostic::new(Code::EmptyRange, kept.range.span, message));
         return None;

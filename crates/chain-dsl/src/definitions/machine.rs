@@ -21,7 +21,7 @@ use crate::syntax::ast::{
     self, AxisKind, Close, Expression, ExpressionKind, Let, MachineStatement, Param, Requirement,
 };
 use crate::values::context::{Context, READABLE, Role};
-use crate::values::dimension::Dimension;
+use crate::values::dimension::{Dimension, WrittenUnit, written_unit};
 use crate::values::value::{Constant, Scope, Value};
 
 /// What a statement of a machine costs each time that the machine is built: it is looked for twins, replaces others, gets a
@@ -96,6 +96,8 @@ pub(crate) struct BuiltAxis<'g> {
     pub(crate) dimension: Option<Dimension>,
     pub(crate) variable: Expr<'g>,
     pub(crate) travel: Option<(f64, f64)>,
+    /// What the travel is written in.
+    pub(crate) travel_unit: Option<WrittenUnit>,
     /// Closed loops give its motion.
     pub(crate) is_unknown: bool,
     pub(crate) law: Option<(Option<Expr<'g>>, LawKind, Span)>,
@@ -403,6 +405,7 @@ impl<'a> Flat<'a> {
             };
             let what = format!("axis `{}`", axis.name.node);
             let travel = axis.range.as_ref().zip(dimension);
+            let travel_unit = travel.and_then(|(range, dimension)| written_unit(dimension, &range.high));
             let travel = travel.and_then(|(range, dimension)| context.range(range, scope, dimension, &what));
             let variable = context.variable(format!("{prefix}{}", axis.name.node), Role::Axis, f64::NAN);
             match (travel, &axis.range) {
@@ -413,7 +416,7 @@ impl<'a> Flat<'a> {
             }
             let word = NcWord::of_axis(&axis.name.node);
             let (name, is_unknown) = (axis.name.clone(), axis.is_unknown);
-            axes.push(BuiltAxis { name, dimension, variable, travel, is_unknown, law: None, word });
+            axes.push(BuiltAxis { name, dimension, variable, travel, travel_unit, is_unknown, law: None, word });
         }
         axes
     }

@@ -136,6 +136,7 @@ impl<'g> Builder<'_, 'g> {
                     law,
                     source,
                     travel: axis.travel,
+                    travel_unit: axis.travel_unit.clone(),
                     word: axis.word.clone(),
                 });
             }

@@ -3,7 +3,7 @@
 use flank_expr::geometry::{Chain, Step};
 use flank_expr::{Expr, Graph};
 
-use crate::values::dimension::Dimension;
+use crate::values::dimension::{Dimension, WrittenUnit};
 
 /// A machine of a job: a tree of frames moved by axes.
 #[derive(Clone, Debug)]
@@ -33,6 +33,8 @@ pub struct Axis<'g> {
     pub source: LawSource,
     /// Travel, mm or radians.
     pub travel: Option<(f64, f64)>,
+    /// What the travel is written in.
+    pub travel_unit: Option<WrittenUnit>,
     /// What NC programs say of it.
     pub word: NcWord,
 }

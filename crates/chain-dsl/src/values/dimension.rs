@@ -134,8 +134,17 @@ pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
     }
 }
 
-/// An inside value in the unit that an expression is written in: -1 arcmin where that is `-1 arcmin`.
-pub(crate) fn shown_like(value: f64, dimension: Dimension, written: &Expression) -> String {
+/// A unit that something is written in.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WrittenUnit {
+    /// `arcmin`
+    pub name: String,
+    /// mm or radians
+    pub size: f64,
+}
+
+/// The unit of a dimension that an expression is written in: that of its first number with one.
+pub(crate) fn written_unit(dimension: Dimension, written: &Expression) -> Option<WrittenUnit> {
     let mut found = None;
     written.each(&mut |part| {
         if let ExpressionKind::Number(_, units) = &part.kind
@@ -143,11 +152,21 @@ pub(crate) fn shown_like(value: f64, dimension: Dimension, written: &Expression)
             && let Some((size, of)) = unit_size(&unit.node)
             && of == dimension
         {
-            found.get_or_insert((size, unit.node.as_str()));
+            found.get_or_insert_with(|| WrittenUnit { name: unit.node.clone(), size });
         }
     });
-    match found {
-        Some((size, unit)) => format!("{} {unit}", without_noise(value / size)),
+    found
+}
+
+/// An inside value in the unit that an expression is written in: -1 arcmin where that is `-1 arcmin`.
+pub(crate) fn shown_like(value: f64, dimension: Dimension, written: &Expression) -> String {
+    shown_in(value, dimension, written_unit(dimension, written).as_ref())
+}
+
+/// An inside value in a unit, if there is one.
+pub(crate) fn shown_in(value: f64, dimension: Dimension, unit: Option<&WrittenUnit>) -> String {
+    match unit {
+        Some(WrittenUnit { name, size }) => format!("{} {name}", without_noise(value / size)),
         None => shown(value, dimension),
     }
 }

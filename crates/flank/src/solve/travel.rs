@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use flank_chain_dsl::{Axis, Job};
+use flank_export::fixed;
 use flank_expr::{Expr, VariableId};
 use flank_solver::{Range, extent};
 
@@ -58,9 +59,15 @@ pub(crate) fn beyond(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
     let mut all = Vec::new();
     for run in runs(job, solved).iter().filter(|run| run.is_beyond() == Some(true)) {
         let (Some(found), Some((low, high))) = (run.over, run.axis.travel) else { continue };
-        let unit = units::symbol(run.axis.dimension);
-        let [from, to, low, high] =
-            [found.low, found.high, low, high].map(|value| units::digits(run.axis.dimension, value, 4));
+        let dimension = run.axis.dimension;
+        // in the unit that the machine says it in
+        let own = run.axis.travel_unit.as_ref();
+        let unit = own.map_or(units::symbol(dimension), |own| own.name.as_str());
+        let digits = |value: f64| match own {
+            Some(own) => fixed(value / own.size, 4),
+            None => units::digits(dimension, value, 4),
+        };
+        let [from, to, low, high] = [found.low, found.high, low, high].map(digits);
         let name = run.name();
         let message = format!(
             "beyond its travel: axis {name} runs from {from} to {to} {unit}, its travel is {low} to {high} {unit}"

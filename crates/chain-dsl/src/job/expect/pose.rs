@@ -12,9 +12,9 @@ use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::Name;
 use crate::job::{Definitions, posed};
 use crate::model::{Axis, Job, LawSource, Machine};
-use crate::syntax::ast::{self, Argument, MachineStatement};
+use crate::syntax::ast::{self, Argument};
 use crate::values::context::Context;
-use crate::values::dimension::{Dimension, shown, shown_like};
+use crate::values::dimension::{Dimension, shown, shown_in, shown_like};
 use crate::values::value::{Scope, Value};
 
 use super::machine::{constant, overrides};
@@ -30,7 +30,7 @@ pub(super) struct Pose<'a> {
     pub(super) within: &'a [ast::Expression],
 }
 
-impl<'a> Pose<'a> {
+impl Pose<'_> {
     /// `plain` is the machine as it stands, with open loops.
     pub(super) fn expected<'g>(
         &self,
@@ -128,14 +128,8 @@ impl<'a> Pose<'a> {
         let what = format!("axis `{}`", axis.name);
         let value = constant(context, &argument.value, axis.dimension, &what)?;
         if let Some((low, high)) = axis.travel.filter(|(low, high)| value < *low || value > *high) {
-            let own = |statement: &'a MachineStatement| match statement {
-                MachineStatement::Axis(own) if own.name.node == axis.name => own.range.as_ref(),
-                _ => None,
-            };
-            let range = self.machine.statements.iter().find_map(own);
-            let [from, to] = range.map_or([&argument.value; 2], |range| [&range.low, &range.high]);
-            let ends = [(value, &argument.value), (low, from), (high, to)];
-            let [value, low, high] = ends.map(|(value, written)| shown_like(value, axis.dimension, written));
+            let [low, high] = [low, high].map(|end| shown_in(end, axis.dimension, axis.travel_unit.as_ref()));
+            let value = shown_like(value, axis.dimension, &argument.value);
             let message = format!("{what} stands at {value}, its travel is {low} .. {high}");
             context.report(Diagnostic::new(Code::OutOfRange, argument.value.span, message));
             return None;
