@@ -99,7 +99,7 @@ impl<'g> Builder<'_, 'g> {
             _ if !is_known => {
                 context.unknown(owner, "tool", self.tools.iter().map(|(tool, ..)| tool.node.as_str()));
             }
-            _ if !self.is_broken_machine(owner) => {
+            _ if !self.is_broken_machine(owner) && !context.is_unmade(&owner.node) => {
                 let message = format!("`{}` is not a tool", owner.node);
                 context.report(Diagnostic::new(Code::WrongKind, owner.span, message));
             }

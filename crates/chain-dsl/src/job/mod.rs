@@ -238,6 +238,7 @@ fn with_points<'g>(
     let mut binder = Binder::new(Source::Job, definitions.overrides);
     context.later = available::valued(job);
     context.unmade.clear();
+    context.unsampled.clear();
     for statement in &job.statements {
         if let Some(name) = available::name_of_value(statement) {
             context.later.remove(&name.node);
@@ -342,6 +343,12 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Param(param) => {
                 self.define(context, &param.name);
                 binder.bind(context, param, &mut self.scope);
+            }
+            // a statement that is nothing else, which is reported: what it was to define is not known
+            JobStatement::Let(ast::Let { name, value }) if value.kind == ExpressionKind::Error => {
+                context.unmade.insert(name.node.clone());
+                self.names.entry(name.node.clone()).or_insert(name.span);
+                self.scope.entry(name.node.clone()).or_insert(Value::Poison);
             }
             JobStatement::Let(binding) => {
                 self.define(context, &binding.name);
