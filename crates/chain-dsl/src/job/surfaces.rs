@@ -103,6 +103,7 @@ impl<'g> Builder<'_, 'g> {
             tool_name: available.name,
             process,
             tool: available.shape,
+            body: available.body,
             path,
             t_work_tool,
             driven,
