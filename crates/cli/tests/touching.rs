@@ -140,3 +140,25 @@ fn a_job_that_asks_for_no_points_is_told_with_its_place() {
     let finding = &document["findings"][0];
     assert_eq!((&finding["code"], &finding["place"]["line"]), (&"E0506".into(), &14.into()), "{document}");
 }
+
+/// An involute turns back at its base circle: there the coordinates do not fix a single point. Nearer to the axis there is none, farther out
+/// there is one, whether the tool cuts it away or not.
+#[test]
+fn points_where_a_surface_turns_back_are_singular() {
+    let folder = folder("turns_back");
+    for (radius, angle) in [(36.0, 20.0), (20.0, 25.0), (50.3, 14.5), (7.0, 30.0)] {
+        let base = format!("{radius} mm * cos({angle} deg)");
+        let spec = PLANER
+            .replace("36 mm", &format!("{radius} mm"))
+            .replace("20 deg", &format!("{angle} deg"))
+            .replace("in -3 mm .. 3 mm", "in -20 mm .. 3 mm")
+            .replace("in -30 deg .. 30 deg", "in -60 deg .. 30 deg")
+            .replace("34.5 mm .. 37.5 mm by 5", &format!("[{base} - 1 um, {base}, {base} + 1 um, {radius} mm]"));
+        let file = written(&folder, "spec.chain", &spec);
+        let run = flank(&["solve", &file, "--json", "--no-picture", "--out", folder.to_str().expect("a plain path")]);
+        let table: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{}", text(&run.stderr)));
+        let outcomes = &table["surfaces"][0]["outcomes"];
+        let counts = ["not_converged", "singular"].map(|outcome| outcomes[outcome].as_u64());
+        assert_eq!(counts, [Some(3); 2], "{radius} {angle}: {outcomes}");
+    }
+}
