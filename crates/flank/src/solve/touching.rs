@@ -151,7 +151,7 @@ fn zero_between(ends: [(Vec<f64>, f64); 2], function: &mut impl FnMut(&[f64]) ->
     if first == 0.0 {
         return Some(low);
     }
-    if !(first * last < 0.0) {
+    if first * last >= 0.0 {
         return None;
     }
     let mut value = first;
