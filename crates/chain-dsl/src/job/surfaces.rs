@@ -441,6 +441,10 @@ impl<'g> Builder<'_, 'g> {
             let pieces = self.pieces_of(&name.node);
             return which_piece(context, name, &pieces);
         };
+        // the parser has reported an entry without a key
+        if written.entries.iter().any(|entry| entry.key.node.is_empty()) {
+            return;
+        }
         let Some(axis) = written.entries.iter().position(|entry| entry.key.node == along) else {
             let pieces = self.pieces_of(&name.node);
             let message = format!("`{}` is in pieces: {}", name.node, quoted(&pieces));

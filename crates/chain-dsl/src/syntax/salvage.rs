@@ -25,7 +25,7 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
         "fix" => MachineStatement::Fix(piece.assignment()),
         "couple" => MachineStatement::Couple(piece.assignment()),
         "nc" => MachineStatement::Nc(NcWord { address: name, value: piece.error(), increment: None }),
-        "close" | "require" => return None,
+        "close" | "require" | "expect" => return None,
         _ => MachineStatement::Let(piece.let_statement(name)),
     })
 }
@@ -44,15 +44,24 @@ pub(super) fn tool_statement(scan: &Scan, word: &str, range: Range<usize>) -> Op
 /// A job's statement; nothing if it has no name.
 pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Option<JobStatement> {
     let piece = Piece { scan, range };
+    // of these two it is known that something is mounted or driven, whatever it is
+    match word {
+        "mount" => {
+            let names = if piece.names().is_empty() { vec![piece.nameless()] } else { piece.names() };
+            return Some(JobStatement::Mount { names, frame: piece.path_after("on") });
+        }
+        "drive" => {
+            return Some(JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }));
+        }
+        _ => {}
+    }
     let name = piece.defined()?;
     Some(match word {
         "param" => JobStatement::Param(piece.param(name)),
         "machine" => JobStatement::Machine(piece.instance(name)),
         "tool" => JobStatement::Tool(piece.instance(name)),
-        "mount" => JobStatement::Mount { names: piece.names(), frame: piece.path_after("on") },
         "motion" => JobStatement::Motion(piece.parameter(piece.range.start + 1, name)),
         "unknown" => JobStatement::Unknown(piece.parameter(piece.range.start + 1, name)),
-        "drive" => JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }),
         "surface" => JobStatement::Surface(GeneratedSurface {
             doc: piece.doc(),
             names: piece.names(),
@@ -99,10 +108,15 @@ pub(super) fn segment(scan: &Scan, range: Range<usize>) -> Segment {
 pub(super) fn head(scan: &Scan, first: usize) -> Head {
     let piece = Piece { scan, range: first..first + 1 };
     let extends = scan.is_name(first + 3) && scan.say(first + 2) != "{";
+    let parent = match extends {
+        true => Some(piece.name(first + 3)),
+        // of which one is not known
+        false => (scan.say(first + 2) == "extends").then(|| piece.nameless()),
+    };
     Head {
         doc: piece.doc(),
         name: piece.defined().unwrap_or_else(|| piece.nameless()),
-        extends: extends.then(|| piece.name(first + 3)),
+        extends: parent,
         changes: Vec::new(),
     }
 }

@@ -200,7 +200,7 @@ impl<'s> Recover<'s> {
         let word = self.scan.kind(self.at) == Some(Kind::Word);
         let meant = closest(self.say(), words::ITEMS.iter().copied()).filter(|_| word);
         let Some(meant) = meant else {
-            self.lacks_files |= self.scan.kind(self.at) == Some(Kind::Text);
+            self.lacks_files |= [0, 1].iter().any(|k| self.scan.kind(self.at + k) == Some(Kind::Text));
             self.report_sign(LIST, "a file consists of machines, tools, jobs and functions");
             self.at = pieces::next_item(self.scan, self.at + 1);
             return;
