@@ -71,6 +71,23 @@ fn an_axis_that_moves_the_wrong_way_is_named() {
     }
 }
 
+/// A hob that feeds has two equations of meshing: points are looked for with each axis moving the other way.
+#[test]
+fn an_axis_of_a_hob_that_moves_the_wrong_way_is_named() {
+    let folder = folder("hob");
+    let parts =
+        ["machines/hobbing_6axis", "tools/involute", "tools/hob_zi", "functions/hobbing", "hobbing/helical_gear"];
+    let spec = support::self_contained(&parts);
+    let law =
+        "drive m.C = -hob_hand * hob_starts / teeth * spindle - tan(helix_angle) / reference_radius * feed * 1 rad";
+    assert!(spec.contains(law));
+    let turned = law.replace("= -hob_hand", "= hob_hand").replace("spindle - tan", "spindle + tan");
+    let named = "if m.C moved by the opposite of its law, 5 of 5 points of the sample would be found: an axis may move the wrong way";
+    for told in told(&folder, &spec.replace(law, &turned)) {
+        assert_eq!(told.matches(named).count(), 2, "{told}");
+    }
+}
+
 /// The flank of an involute begins at its base circle.
 #[test]
 fn where_the_surface_lies_is_told() {

@@ -1,10 +1,10 @@
 //! Where nothing of a surface was found: where it lies within its ranges, or, where the tool touches nowhere, how fast an axis would have to
 //! move for it to touch.
 
-use flank_chain_dsl::{Axis, GeneratedSurface, Job, Process, RangedVariable, ToolShape};
+use flank_chain_dsl::{Axis, Coordinate, GeneratedSurface, Job, Process, RangedVariable, ToolShape};
 use flank_expr::geometry::Surface;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
-use flank_solver::{Outcome, SurfacePoint};
+use flank_solver::{Outcome, SurfacePoint, SurfaceProblem};
 
 use crate::project::units;
 use crate::solve::surface::bound;
@@ -20,6 +20,8 @@ const FASTEST: i32 = 4;
 const STEPS: i32 = 8;
 /// How near to the opposite of its law an axis would have to move for its sense to be doubted.
 const OPPOSITE: f64 = 0.1;
+/// Boxes that the search for points with an axis that moves the other way looks at.
+const MOST_BOXES: u64 = 500;
 /// Halvings of a gap between places.
 const HALVINGS: usize = 40;
 
@@ -38,7 +40,8 @@ pub(crate) fn told(job: &Job<'_>, surface: &GeneratedSurface<'_>, points: &[Surf
         if is_told { no_contact(surface, unknowns, place, &speeds) } else { Vec::new() }
     };
     let elsewhere = match extents(job, surface, &surface.unknowns) {
-        Extents::Unknown => return Vec::new(),
+        Extents::Unknown if is_reached => return Vec::new(),
+        Extents::Unknown => return opposite(job, surface),
         Extents::Nowhere => return nowhere(&surface.unknowns, ""),
         Extents::Between(ends) => elsewhere(surface, ends).filter(|_| !is_reached),
     };
@@ -235,24 +238,7 @@ fn speeds<'g>(
     let generation = &surface.generation;
     let graph = axis.variable.graph();
     let factor = graph.variable("speed");
-    let over = surface.unknowns.iter().zip(unknowns).filter(|(own, _)| generation.motions.contains(&own.variable));
-    let at: Vec<(Expr<'g>, Expr<'g>)> = over.map(|(own, of)| (own.variable, graph.constant(reference(of)))).collect();
-    let still = graph.substitute(&[axis.law], &at)[0];
-    if still == axis.law {
-        return None;
-    }
-    let laws: Vec<(Expr<'g>, Expr<'g>)> = job
-        .machines
-        .iter()
-        .flat_map(|machine| &machine.axes)
-        .map(|of| (of.variable, if of.variable == axis.variable { still + factor * (of.law - still) } else { of.law }))
-        .collect();
-    let driven = generation.t_work_tool.substituted(&laws).merged();
-    let made = match (generation.process, &generation.tool) {
-        (Process::Envelope, ToolShape::Surface(tool)) => tool.envelope(&driven, &generation.motions),
-        (Process::Sweep, ToolShape::Edge(edge)) => edge.sweep(&driven, &generation.motions, false),
-        _ => return None,
-    };
+    let made = with_speed(job, surface, unknowns, (axis, factor))?;
     let constraint = sole_constraint(&made, unknowns)?;
     let constraint = graph.substitute(&[constraint], &job.bindings())[0];
     let inputs: Vec<Expr<'g>> = made.unknowns.iter().copied().chain([factor]).collect();
@@ -277,6 +263,69 @@ fn speeds<'g>(
     }
     // where both slower and faster would do, so would the law somewhere between the places
     found.filter(|[low, high]| *low > 1.0 || *high < 1.0)
+}
+
+/// The surface with an axis that moves a factor times as fast as by its law, where the motions are away from their references; none where it
+/// does not move by them.
+fn with_speed<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    unknowns: &[RangedVariable<'_>],
+    (axis, factor): (&Axis<'g>, Expr<'g>),
+) -> Option<Surface<'g>> {
+    let generation = &surface.generation;
+    let graph = axis.variable.graph();
+    let over = surface.unknowns.iter().zip(unknowns).filter(|(own, _)| generation.motions.contains(&own.variable));
+    let at: Vec<(Expr<'g>, Expr<'g>)> = over.map(|(own, of)| (own.variable, graph.constant(reference(of)))).collect();
+    let still = graph.substitute(&[axis.law], &at)[0];
+    if still == axis.law {
+        return None;
+    }
+    let law = |of: &Axis<'g>| if of.variable == axis.variable { still + factor * (of.law - still) } else { of.law };
+    let axes = job.machines.iter().flat_map(|machine| &machine.axes);
+    let laws: Vec<(Expr<'g>, Expr<'g>)> = axes.map(|of| (of.variable, law(of))).collect();
+    let driven = generation.t_work_tool.substituted(&laws).merged();
+    match (generation.process, &generation.tool) {
+        (Process::Envelope, ToolShape::Surface(tool)) => Some(tool.envelope(&driven, &generation.motions)),
+        (Process::Sweep, ToolShape::Edge(edge)) => Some(edge.sweep(&driven, &generation.motions, false)),
+        _ => None,
+    }
+}
+
+/// The axes that would lead to most of a few points of the sample if they moved by the opposite of their laws: of surfaces with several equations.
+fn opposite(job: &Job<'_>, surface: &GeneratedSurface<'_>) -> Vec<String> {
+    let machine = surface.frame.split('.').next().unwrap_or_default();
+    let axes = job.machines.iter().filter(|of| of.name == machine).flat_map(|of| &of.axes);
+    let told = axes.filter_map(|axis| {
+        let [found, asked] = found_opposite(job, surface, axis)?;
+        (2 * found > asked).then(|| {
+            format!(
+                "if {machine}.{} moved by the opposite of its law, {found} of {asked} points of the sample would be found: an axis may move \
+                 the wrong way",
+                axis.name
+            )
+        })
+    });
+    told.collect()
+}
+
+/// How many of a few points of the sample are found where an axis moves by the opposite of its law, and how many were asked for.
+fn found_opposite<'g>(job: &Job<'g>, surface: &GeneratedSurface<'g>, axis: &Axis<'g>) -> Option<[usize; 2]> {
+    let sample = surface.sample.as_ref()?;
+    let back = axis.variable.graph().constant(-1.0);
+    let made = with_speed(job, surface, &surface.unknowns, (axis, back))?;
+    let turned = GeneratedSurface { surface: made, ..surface.clone() };
+    let own = |of: &Coordinate<'g>| turned.coordinates().into_iter().find(|own| own.name == of.name);
+    let [first, second] = sample.coordinates.each_ref().map(|of| own(of).map(|own| own.value));
+    let problem = SurfaceProblem::new(&bound(job, &turned), [first?, second?]).ok()?;
+    let [rows, columns] = sample.counts;
+    let places = [(rows / 2, columns / 2), (0, 0), (0, columns - 1), (rows - 1, 0), (rows - 1, columns - 1)];
+    let targets = places.map(|(row, column)| sample.grid.at(row, column));
+    let (points, _) = problem.points_alone().boxes(MOST_BOXES).solve(&targets, [1, targets.len()]);
+    // several branches are points, too
+    let is_found =
+        |point: &&SurfacePoint| matches!(point.outcome, Outcome::Solved | Outcome::CutAway(_) | Outcome::Ambiguous);
+    Some([points.iter().filter(is_found).count(), targets.len()])
 }
 
 /// The zero of a function of the last value of a place that is nearest to 1, among the speeds that are tried.
