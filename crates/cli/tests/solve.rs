@@ -287,7 +287,7 @@ fn jobs_without_a_sample_are_passed_over() {
     for wrong in [&[both.as_str(), "--job", "idle_gear"][..], &[&none]] {
         let run = solve(wrong);
         assert_eq!(run.status.code(), Some(1), "{}", text(&run.stdout));
-        assert!(text(&run.stderr).contains("error: job `"), "{}", text(&run.stderr));
+        assert!(text(&run.stderr).contains("error[E0506]: job `"), "{}", text(&run.stderr));
         assert!(run.stdout.is_empty());
     }
 }

@@ -223,6 +223,31 @@ fn angles_of_a_worm_are_those_that_were_changed() {
     assert!(both.len() == 2 && both.iter().all(|told| (told.abs() - by).abs() < 0.05 * by), "{both:?} instead of {by}");
 }
 
+/// The teeth of a face gear run along the radius, those of a rack's gear along the axis: a sample by both does not say which. Of the face gear,
+/// whose profiles run along the axis, no angle is told, neither under the name of the other.
+#[test]
+fn no_angle_is_told_of_teeth_along_the_radius() {
+    let folder = folder("test_face_gear");
+    let parts = [
+        "machines/hobbing_6axis",
+        "machines/power_skiving",
+        "machines/gear_shaping",
+        "tools/involute",
+        "tools/pinion_cutter",
+        "hobbing/face_gear",
+    ];
+    let spec = support::self_contained(&parts);
+    written(&folder, "face.chain", &spec);
+    assert_eq!(tested(&folder, "", &["--accept"]).status.code(), Some(0));
+    let (from, to) = ("normal_pressure_angle : angle in 1 deg .. 45 deg = 20 deg", "20.01 deg");
+    assert!(spec.contains(from));
+    written(&folder, "face.chain", &spec.replace(from, &from.replace("20 deg", to)));
+    let told = text(&tested(&folder, "", &[]).stdout);
+    let moved = told.lines().filter(|line| line.contains("moved along its normal"));
+    assert_eq!(moved.clone().count(), 2, "{told}");
+    assert!(moved.clone().all(|line| !line.contains("angle")), "{told}");
+}
+
 #[test]
 fn snapshots_are_accepted_and_differ_in_words() {
     let folder = folder("test_snapshot");

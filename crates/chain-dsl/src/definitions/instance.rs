@@ -394,8 +394,9 @@ impl<'a, 'g> Binder<'a, 'g> {
                 let known: HashSet<&str> = params.iter().map(|param| param.name.node.as_str()).collect();
                 let unknown = settings.iter().filter_map(|setting| setting.name.as_ref());
                 let unknown = unknown.filter(|name| !known.contains(name.node.as_str())).count();
-                // a misspelt setting is one mistake, not also a missing one
-                if names.len() > unknown {
+                // a setting that is misspelt, or cannot be read, is one mistake, not also a missing one
+                let is_read = settings.iter().all(|setting| setting.value.kind != ExpressionKind::Error);
+                if names.len() > unknown && is_read {
                     let missing = params.iter().filter(|param| names.contains(&param.name.node.as_str())).copied();
                     let message = format!("`{}` needs {}", name.node, with_dimensions(context, missing));
                     let help =
@@ -525,6 +526,8 @@ fn check_settings(context: &mut Context<'_>, settings: &[Argument], params: &[&P
     let mut seen: HashMap<&str, Span> = HashMap::new();
     for setting in settings {
         match &setting.name {
+            // the parser has reported settings that cannot be read
+            None if setting.value.kind == ExpressionKind::Error => {}
             None => {
                 let message = "a setting has a name: `name: value`";
                 let nameless = Diagnostic::new(Code::WrongArguments, setting.value.span, message);

@@ -54,6 +54,7 @@ impl Items {
         items
     }
 
+    /// Of two with one name, which is reported, the first is meant.
     fn define(&mut self, context: &mut Context<'_>, item: &Item) {
         match item {
             Item::Use(_) | Item::Job(_) | Item::Variant(_) => {}
@@ -62,14 +63,15 @@ impl Items {
                     let message = format!("`{}` is a function of the language", function.name.node);
                     context.report(Diagnostic::new(Code::DuplicateName, function.name.span, message));
                 } else {
-                    context.functions.insert(function.name.node.clone(), Rc::new(function.clone()));
+                    let first = context.functions.entry(function.name.node.clone());
+                    first.or_insert_with(|| Rc::new(function.clone()));
                 }
             }
             Item::Machine(machine) => {
-                self.machines.insert(machine.name.node.clone(), machine.clone());
+                self.machines.entry(machine.name.node.clone()).or_insert_with(|| machine.clone());
             }
             Item::Tool(tool) => {
-                self.tools.insert(tool.name.node.clone(), tool.clone());
+                self.tools.entry(tool.name.node.clone()).or_insert_with(|| tool.clone());
             }
         }
     }

@@ -92,7 +92,8 @@ fn segments<'g>(
         run = next.as_ref().map_or(run, |segment| segment.to);
         built.push(next);
     }
-    for pair in built.windows(2) {
+    // a segment that cannot be read leaves a gap
+    for pair in built.windows(2).filter(|_| !written.broken) {
         if let [Some(one), Some(next)] = pair {
             check_joint(context, one, next);
         }

@@ -13,7 +13,7 @@ use crate::definitions::profile;
 use crate::definitions::requirement;
 use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
-use crate::diagnostics::source::Name;
+use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
 use crate::model::{Parameter, PieceEnds, RangedVariable, ToolShape};
 use crate::syntax::ast::{self, ExpressionKind, Side, SurfaceParameter, ToolStatement};
@@ -37,6 +37,8 @@ pub(crate) struct ToolSurface<'g> {
     pub(crate) name: String,
     /// Its smooth pieces; `None` if it is not known which they are (and that is reported), or nobody wants them.
     pub(crate) pieces: Option<Vec<Piece<'g>>>,
+    /// Where it is said on which side the steel lies.
+    pub(crate) body: Span,
 }
 
 /// All of a surface, or the piece of it along one segment of a profile.
@@ -116,7 +118,7 @@ pub(crate) fn build<'g>(
         for side in sides(context, written) {
             let is_wanted = wanted(&side.name.node, None);
             let pieces = if is_wanted { pieces(context, side, &scope, wanted) } else { None };
-            surfaces.push(ToolSurface { name: side.name.node.clone(), pieces });
+            surfaces.push(ToolSurface { name: side.name.node.clone(), pieces, body: side.written.body.span });
         }
     }
     BuiltTool { parameters, scope, surfaces }

@@ -22,6 +22,8 @@ pub(super) struct Available<'g> {
     pub(super) shape: ToolShape<'g>,
     pub(super) unknowns: Vec<RangedVariable<'g>>,
     pub(super) frame: FrameRef,
+    /// Where it is said of a tool's surface on which side the steel lies.
+    pub(super) body: Option<Span>,
     /// Where it is asked for.
     pub(super) named: Span,
 }
@@ -99,7 +101,7 @@ impl<'g> Builder<'_, 'g> {
             _ if !is_known => {
                 context.unknown(owner, "tool", self.tools.iter().map(|(tool, ..)| tool.node.as_str()));
             }
-            _ if !self.is_broken_machine(owner) => {
+            _ if !self.is_broken_machine(owner) && !context.is_unmade(&owner.node) => {
                 let message = format!("`{}` is not a tool", owner.node);
                 context.report(Diagnostic::new(Code::WrongKind, owner.span, message));
             }
@@ -141,6 +143,7 @@ impl<'g> Builder<'_, 'g> {
                     shape: ToolShape::Surface(surface.surface.clone()),
                     unknowns: surface.unknowns.clone(),
                     frame: mounted.map_or(Some(*frame), |(frame, _)| frame)?,
+                    body: None,
                     named: path.span,
                 });
             }
@@ -170,6 +173,7 @@ impl<'g> Builder<'_, 'g> {
             return None;
         };
         let mut pieces = surface.pieces.clone()?;
+        let body = Some(surface.body);
         if let Some(wanted) = path.segments.get(2) {
             let names: Vec<&str> = pieces.iter().filter_map(|piece| piece.name.as_deref()).collect();
             if path.segments.len() > 3 || !names.contains(&wanted.node.as_str()) {
@@ -193,6 +197,7 @@ impl<'g> Builder<'_, 'g> {
                 shape,
                 unknowns,
                 frame,
+                body,
                 named: path.span,
             })
         });

@@ -181,7 +181,8 @@ impl<'g> Builder<'_, 'g> {
 
     /// The pieces of a cutter's surface, and the frame that the cutter sits on.
     fn cutter(&mut self, context: &mut Context<'g>, path: &ast::Path) -> Option<(Vec<CutterPiece<'g>>, FrameRef)> {
-        if !self.is_of_tool(path) && path.segments.first().is_some_and(|owner| self.names.contains_key(&owner.node)) {
+        let is_other = |owner: &Name| self.names.contains_key(&owner.node) && !context.is_unmade(&owner.node);
+        if !self.is_of_tool(path) && path.segments.first().is_some_and(is_other) {
             let message = format!("`{}` is no surface of a tool", path.joined());
             let help = "name a surface of the cutter: `e.cutting`";
             context.report(Diagnostic::new(Code::WrongKind, path.span, message).help(help));

@@ -160,7 +160,7 @@ pub(crate) fn standing<'g>(
     let mut builder = Builder::new(definitions, true);
     builder.sole_machine(context, machine);
     let machines = builder.settle_axes(context);
-    builder.into_job(machine.name.node.clone(), machine.doc.clone(), machines, file)
+    builder.into_job(&machine.name, machine.doc.clone(), machines, file)
 }
 
 /// A machine by itself whose axes stand at these values, in its loops too; these stay open without.
@@ -177,7 +177,7 @@ fn posed<'g>(
         None => builder.unsettled.extend(0..builder.machines.len()),
     }
     let machines = builder.settle_axes(context);
-    builder.into_job(machine.name.node.clone(), Vec::new(), machines, Path::new(""))
+    builder.into_job(&machine.name, Vec::new(), machines, Path::new(""))
 }
 
 /// A job with all its names resolved; what is wrong in it is reported and left out.
@@ -238,6 +238,7 @@ fn with_points<'g>(
     let mut binder = Binder::new(Source::Job, definitions.overrides);
     context.later = available::valued(job);
     context.unmade.clear();
+    context.unsampled.clear();
     for statement in &job.statements {
         if let Some(name) = available::name_of_value(statement) {
             context.later.remove(&name.node);
@@ -292,12 +293,12 @@ fn with_points<'g>(
     let is_settled = context.is_whole && builder.sampled.are_known() && context.unmade.is_empty();
     let expectations = if is_settled { builder.expectations(context, job) } else { Vec::new() };
     let sampled = std::mem::take(&mut builder.sampled);
-    let built = builder.into_job(job.name.node.clone(), job.doc.clone(), machines, file);
+    let built = builder.into_job(&job.name, job.doc.clone(), machines, file);
     (Job { expectations, ..built }, sampled)
 }
 
 impl<'g> Builder<'_, 'g> {
-    fn into_job(self, name: String, doc: Vec<String>, machines: Vec<Machine<'g>>, file: &Path) -> Job<'g> {
+    fn into_job(self, name: &Name, doc: Vec<String>, machines: Vec<Machine<'g>>, file: &Path) -> Job<'g> {
         let mut parameters = self.parameters;
         let mut settings = Vec::new();
         for (_, _, built) in self.machines {
@@ -311,9 +312,10 @@ impl<'g> Builder<'_, 'g> {
         parameters.sort_by_key(|parameter| parameter.variable.as_variable());
         let surfaces = self.surfaces.into_iter().map(|(surface, _)| surface).collect();
         Job {
-            name,
+            name: name.node.clone(),
             doc,
             file: file.to_path_buf(),
+            written: name.span,
             parameters,
             settings,
             motions: self.motions,
@@ -342,6 +344,12 @@ impl<'g> Builder<'_, 'g> {
             JobStatement::Param(param) => {
                 self.define(context, &param.name);
                 binder.bind(context, param, &mut self.scope);
+            }
+            // a statement that is nothing else, which is reported: what it was to define is not known
+            JobStatement::Let(ast::Let { name, value }) if value.kind == ExpressionKind::Error => {
+                context.unmade.insert(name.node.clone());
+                self.names.entry(name.node.clone()).or_insert(name.span);
+                self.scope.entry(name.node.clone()).or_insert(Value::Poison);
             }
             JobStatement::Let(binding) => {
                 self.define(context, &binding.name);

@@ -16,6 +16,7 @@ use crate::values::dimension::shown;
 use crate::values::value::Value;
 
 use super::available::{Available, which_piece};
+use super::choices::choosing;
 use super::independence::check_independence;
 use super::{Builder, FrameRef, are_even, declared, sweep};
 
@@ -73,6 +74,9 @@ impl<'g> Builder<'_, 'g> {
         let path = self.path_between(context, frame, available.frame, written.value.span)?;
         let t_work_tool = Chain::new(context.graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
         let driven = t_work_tool.substituted(&self.laws).merged();
+        if self.stands_still(context, (&written.frame, frame), &driven, motions, &available) {
+            return None;
+        }
         // what follows from a machine that is not whole is no mistake of its own
         if !self.check_motions(context, &driven, motions, written, &available) || self.unsettled.contains(&frame.0) {
             return None;
@@ -99,6 +103,7 @@ impl<'g> Builder<'_, 'g> {
             tool_name: available.name,
             process,
             tool: available.shape,
+            body: available.body,
             path,
             t_work_tool,
             driven,
@@ -227,6 +232,47 @@ impl<'g> Builder<'_, 'g> {
         }
         let hops = path(&self.machines[from.0].2.frames, from.1, to.1);
         Some(hops.into_iter().map(|(frame, steps)| (self.frame_name((from.0, frame)), steps)).collect())
+    }
+
+    /// Whether a surface is asked for over motions in a frame that the tool never leaves; reports it.
+    fn stands_still(
+        &self,
+        context: &mut Context<'g>,
+        (written, frame): (&ast::Path, FrameRef),
+        driven: &Chain<'g>,
+        motions: &[(RangedVariable<'g>, Span)],
+        available: &Available<'g>,
+    ) -> bool {
+        let moves = |chain: &Chain<'g>, motion: &RangedVariable<'g>| !chain.twist(motion.variable).is_zero();
+        let over = motions.iter().map(|(motion, _)| motion);
+        // an axis without a law has been reported
+        let is_unsettled = self.unsettled.contains(&frame.0);
+        if motions.is_empty() || is_unsettled || over.chain(&self.motions).any(|motion| moves(driven, motion)) {
+            return false;
+        }
+        let is_own = frame == available.frame;
+        let others = (0..self.machines[frame.0].2.frames.len()).map(|other| (frame.0, other)).filter(|other| {
+            let hops = path(&self.machines[frame.0].2.frames, other.1, available.frame.1);
+            let steps = hops.into_iter().flat_map(|(_, steps)| steps).collect();
+            let chain = Chain::new(context.graph, steps).substituted(&self.laws).merged();
+            motions.iter().all(|(motion, _)| moves(&chain, motion))
+        });
+        let others: Vec<String> = others.map(|other| self.frame_name(other)).collect();
+        if others.is_empty() && !is_own {
+            return false;
+        }
+        let stands = if is_own { "is the tool's own frame" } else { "moves with the tool" };
+        let message = format!("`{}` {stands}: `{}` leaves nothing in it", written.joined(), available.name);
+        let mut still = Diagnostic::new(Code::IdleMotion, written.span, message);
+        if others.is_empty() {
+            still = still.help("name the frame of the work, and drive an axis between it and the tool by the motion");
+        } else {
+            let choices: Vec<&str> = others.iter().map(String::as_str).collect();
+            let help = format!("name the frame of the work; the tool moves in {}", quoted(&choices));
+            still = choosing(still.help(help), written.span, &choices);
+        }
+        context.report(still);
+        true
     }
 
     /// The envelope is over exactly the motions that move the tool against the work.
@@ -395,6 +441,10 @@ impl<'g> Builder<'_, 'g> {
             let pieces = self.pieces_of(&name.node);
             return which_piece(context, name, &pieces);
         };
+        // the parser has reported an entry without a key
+        if written.entries.iter().any(|entry| entry.key.node.is_empty()) {
+            return;
+        }
         let Some(axis) = written.entries.iter().position(|entry| entry.key.node == along) else {
             let pieces = self.pieces_of(&name.node);
             let message = format!("`{}` is in pieces: {}", name.node, quoted(&pieces));
@@ -468,6 +518,8 @@ impl<'g> Builder<'_, 'g> {
         match rest {
             _ if !declared.contains(&name.node.as_str()) => context.unknown(name, "surface", declared.into_iter()),
             [] if !pieces.is_empty() => which_piece(context, name, &pieces),
+            // the parser has reported a missing name
+            [piece, ..] if piece.node.is_empty() => {}
             [piece, ..] if self.surfaces.iter().any(|(surface, _)| surface.name == name.node) => {
                 let message = format!("`{}` has no pieces", name.node);
                 context.report(Diagnostic::new(Code::WrongKind, piece.span, message));

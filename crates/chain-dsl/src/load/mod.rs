@@ -122,7 +122,7 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
     let mut sources = Sources::default();
     let id = sources.add(name, text);
     let (file, mut diagnostics) = parsed::parsed(text, id);
-    let mut lacks_files = false;
+    let mut lacks_files = file.lacks_files;
     for item in &file.items {
         if let Item::Use(path) = item {
             lacks_files = true;
@@ -182,6 +182,7 @@ impl Loader {
         self.known.insert(real.to_path_buf(), id);
         let (file, diagnostics) = parsed::parsed(&self.loaded.sources.file(id).text, id);
         self.loaded.diagnostics.extend(diagnostics);
+        self.loaded.lacks_files |= file.lacks_files;
         self.open.push(id);
         for item in &file.items {
             if let Item::Use(used) = item {

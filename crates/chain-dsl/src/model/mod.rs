@@ -11,6 +11,8 @@ use std::path::PathBuf;
 
 use flank_expr::Expr;
 
+use crate::diagnostics::Diagnostic;
+use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::Span;
 use crate::job::expect::model::Expectation;
 use crate::values::dimension::Dimension;
@@ -33,6 +35,8 @@ pub struct Job<'g> {
     pub doc: Vec<String>,
     /// The file that it stands in.
     pub file: PathBuf,
+    /// Where its name is written; that of the machine where it is one by itself.
+    pub written: Span,
     /// Job parameters and settings of its machines and tools, each after those that its value depends on.
     pub parameters: Vec<Parameter<'g>>,
     /// All settings of a machine that stands by itself ([`compile_with_machine`](crate::compile_with_machine)), with the ranges that
@@ -141,6 +145,17 @@ pub(crate) fn within<'n>(name: &'n str, job: &str) -> Option<&'n str> {
 }
 
 impl<'g> Job<'g> {
+    /// What is said of a job without a sample where its points are asked for.
+    #[must_use]
+    pub fn asks_for_nothing(&self) -> Diagnostic {
+        let message = format!("job `{}` asks for no points: none of its surfaces has a `sample`", self.name);
+        let help = match &self.surfaces[..] {
+            [] => "make a surface, and say by a `sample` of it which points are wanted".to_string(),
+            [first, ..] => format!("say which points are wanted: `sample {} {{ … }}`", first.name),
+        };
+        Diagnostic::new(Code::SampleShape, self.written, message).help(help)
+    }
+
     /// Whether it has a parameter or setting that is given from outside by such a name: `m.swivel`, or with the job's own name before
     /// it.
     pub fn has_parameter(&self, name: &str) -> bool {

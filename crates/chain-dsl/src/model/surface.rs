@@ -64,6 +64,8 @@ pub struct Generation<'g> {
     pub process: Process,
     /// The tool in its own frame.
     pub tool: ToolShape<'g>,
+    /// Where it is written on which side of it the steel lies; none of a surface that the job made.
+    pub body: Option<Span>,
     /// The frames from work to tool, as `m.table`, with the steps between each and the one before it.
     pub path: Vec<(String, Vec<Step<'g>>)>,
     /// The pose of the tool in the work, in axis variables.

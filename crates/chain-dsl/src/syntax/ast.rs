@@ -22,6 +22,8 @@ pub struct File {
     pub doc: Vec<String>,
     /// The items in order.
     pub items: Vec<Item>,
+    /// Whether it uses a file whose path could not be read, which is reported.
+    pub lacks_files: bool,
 }
 
 /// A top-level item.

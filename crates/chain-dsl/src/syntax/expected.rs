@@ -256,6 +256,8 @@ pub(super) fn sign(rule: Rule) -> Option<&'static str> {
         Rule::kw_error => "error",
         Rule::kw_at => "at",
         Rule::kw_with => "with",
+        Rule::kw_near => "near",
+        Rule::kw_within => "within",
         Rule::kw_of => "of",
         Rule::kw_passes => "passes",
         Rule::kw_side => "side",

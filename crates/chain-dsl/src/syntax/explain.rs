@@ -43,7 +43,7 @@ impl<'s> Mistake<'s> {
     pub(super) fn whole_before(&self) -> Option<u32> {
         let whole = self.expected.contains(&Rule::EOI) || self.lacks_parenthesis();
         let within = self.found > self.range.start && self.found < self.range.end;
-        let separate = self.leads() || self.kind() == Some(Kind::Strange) || self.say() == ",";
+        let separate = self.leads() || self.kind() == Some(Kind::Strange);
         (whole && within && separate).then(|| self.scan.place(self.found - 1).end)
     }
 
@@ -61,6 +61,7 @@ impl<'s> Mistake<'s> {
             Self::habit,
             Self::stray_bracket,
             Self::frame_in_its_place,
+            Self::no_tolerance,
         ];
         special.iter().find_map(|explain| explain(self)).unwrap_or_else(|| self.unexpected())
     }
@@ -137,6 +138,13 @@ impl<'s> Mistake<'s> {
                 written,
             )
         })
+    }
+
+    /// `expect ratio near 1.6`
+    fn no_tolerance(&self) -> Option<Diagnostic> {
+        let is_open = self.scan.say(self.range.start) == "expect" && self.expected.contains(&Rule::kw_within);
+        let report = is_open.then(|| self.unexpected()).filter(|report| report.help.is_none())?;
+        Some(report.help("say by how much it may differ, such as `within 1 um`"))
     }
 
     /// `z: 0 mm by 3` in a sample.

@@ -5,9 +5,9 @@ use std::ops::Range;
 use crate::diagnostics::source::{Name, Span, Spanned};
 
 use super::ast::{
-    Argument, Assignment, Axis, AxisKind, Body, Dimension, Drive, Expression, ExpressionKind, Frame, Function,
+    Argument, Assignment, Axis, AxisKind, Body, Contact, Dimension, Drive, Expression, ExpressionKind, Frame, Function,
     GeneratedSurface, Instance, Item, JobStatement, Let, MachineStatement, Mill, NcWord, Param, Parameter, Path,
-    Sample, SampleEntry, SampleValues, Sampled, Segment, Side, SurfaceParameter, ToolStatement, Type,
+    Sample, SampleEntry, SampleValues, Sampled, Segment, Side, Solid, SurfaceParameter, ToolStatement, Type,
 };
 use super::build::{Head, SurfaceParts};
 use super::scan::Scan;
@@ -25,7 +25,7 @@ pub(super) fn machine_statement(scan: &Scan, word: &str, range: Range<usize>) ->
         "fix" => MachineStatement::Fix(piece.assignment()),
         "couple" => MachineStatement::Couple(piece.assignment()),
         "nc" => MachineStatement::Nc(NcWord { address: name, value: piece.error(), increment: None }),
-        "close" | "require" => return None,
+        "close" | "require" | "expect" => return None,
         _ => MachineStatement::Let(piece.let_statement(name)),
     })
 }
@@ -44,15 +44,24 @@ pub(super) fn tool_statement(scan: &Scan, word: &str, range: Range<usize>) -> Op
 /// A job's statement; nothing if it has no name.
 pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Option<JobStatement> {
     let piece = Piece { scan, range };
+    // of these two it is known that something is mounted or driven, whatever it is
+    match word {
+        "mount" => {
+            let names = if piece.names().is_empty() { vec![piece.nameless()] } else { piece.names() };
+            return Some(JobStatement::Mount { names, frame: piece.path_after("on") });
+        }
+        "drive" => {
+            return Some(JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }));
+        }
+        _ => {}
+    }
     let name = piece.defined()?;
     Some(match word {
         "param" => JobStatement::Param(piece.param(name)),
         "machine" => JobStatement::Machine(piece.instance(name)),
         "tool" => JobStatement::Tool(piece.instance(name)),
-        "mount" => JobStatement::Mount { names: piece.names(), frame: piece.path_after("on") },
         "motion" => JobStatement::Motion(piece.parameter(piece.range.start + 1, name)),
         "unknown" => JobStatement::Unknown(piece.parameter(piece.range.start + 1, name)),
-        "drive" => JobStatement::Drive(Drive { targets: piece.paths(), values: vec![piece.error()] }),
         "surface" => JobStatement::Surface(GeneratedSurface {
             doc: piece.doc(),
             names: piece.names(),
@@ -63,7 +72,17 @@ pub(super) fn job_statement(scan: &Scan, word: &str, range: Range<usize>) -> Opt
         "cut" => JobStatement::Cut { surface: piece.path(piece.range.start + 1), by: piece.path_after("by") },
         "sample" => JobStatement::Sample(piece.sample()),
         "mill" => JobStatement::Mill(piece.mill(name)),
-        "require" | "solid" | "contact" | "want" | "expect" => return None,
+        "solid" => {
+            let (doc, frame, value) = (piece.doc(), piece.path_after("in"), piece.error());
+            JobStatement::Solid(Solid { doc, name, frame, value })
+        }
+        "contact" => JobStatement::Contact(Contact {
+            doc: piece.doc(),
+            name,
+            surfaces: ["=", "with"].map(|word| piece.path_after(word)),
+            arguments: vec![Argument { name: None, value: piece.error() }],
+        }),
+        "require" | "want" | "expect" => return None,
         _ => JobStatement::Let(piece.let_statement(name)),
     })
 }
@@ -89,10 +108,15 @@ pub(super) fn segment(scan: &Scan, range: Range<usize>) -> Segment {
 pub(super) fn head(scan: &Scan, first: usize) -> Head {
     let piece = Piece { scan, range: first..first + 1 };
     let extends = scan.is_name(first + 3) && scan.say(first + 2) != "{";
+    let parent = match extends {
+        true => Some(piece.name(first + 3)),
+        // of which one is not known
+        false => (scan.say(first + 2) == "extends").then(|| piece.nameless()),
+    };
     Head {
         doc: piece.doc(),
         name: piece.defined().unwrap_or_else(|| piece.nameless()),
-        extends: extends.then(|| piece.name(first + 3)),
+        extends: parent,
         changes: Vec::new(),
     }
 }
@@ -169,6 +193,8 @@ impl Piece<'_> {
     fn dimension(&self, after: usize) -> Dimension {
         let named = (after..self.range.end).take_while(|&index| self.scan.say(index) != ",");
         let found = named.clone().find(|&index| words::DIMENSIONS.contains(&self.scan.say(index)));
+        // of `length / angle` it is not known how much of it is meant
+        let found = found.filter(|index| !matches!(self.scan.say(index + 1), "/" | "*" | "^"));
         let factor = found.map_or_else(|| self.nameless(), |index| self.name(index));
         Dimension { span: factor.span, factors: vec![(factor, 1)] }
     }
@@ -245,7 +271,15 @@ impl Piece<'_> {
         let mut index = from;
         while index < self.range.end && self.scan.is_name(index) {
             segments.push(self.name(index));
-            index += if self.scan.say(index + 1) == "." { 2 } else { self.range.len() };
+            index += 1;
+            if self.scan.say(index) != "." {
+                break;
+            }
+            index += 1;
+            // what stands behind the dot is no name, which is reported
+            if !self.scan.is_name(index) {
+                segments.push(Spanned { span: self.scan.place(index), ..self.nameless() });
+            }
         }
         if segments.is_empty() {
             segments.push(self.nameless());
@@ -280,7 +314,9 @@ impl Piece<'_> {
         let definition = if named { self.name(index) } else { self.nameless() };
         let settings = self.firsts_in_parentheses().into_iter();
         let settings = settings.map(|index| Argument { name: Some(self.name(index)), value: self.error() });
-        Instance { name, definition, settings: settings.collect() }
+        // what else there may be
+        let others = Argument { name: None, value: self.error() };
+        Instance { name, definition, settings: settings.chain([others]).collect() }
     }
 
     /// Its frame is known: the axes of that machine need no laws.

@@ -97,8 +97,11 @@ pub(crate) struct Context<'g> {
     unknown: HashSet<String>,
     /// What the job being looked at declares farther down, and where.
     pub(crate) later: HashMap<String, Span>,
-    /// Its machines and tools that could not be made, which has been reported: their values are not known.
+    /// What it declares that could not be made, which has been reported: its values are not known. Machines and tools; for expectations
+    /// all else, too.
     pub(crate) unmade: HashSet<String>,
+    /// Its surfaces that lack a sample, which has been reported.
+    pub(crate) unsampled: HashSet<String>,
     /// Whether a requirement did not hold in the item being looked at.
     is_unmet: bool,
     /// Steps of evaluation so far: expressions looked at and nodes walked over.
@@ -148,6 +151,7 @@ impl<'g> Context<'g> {
             unknown: HashSet::new(),
             later: HashMap::new(),
             unmade: HashSet::new(),
+            unsampled: HashSet::new(),
             is_unmet: false,
             moving: HashSet::new(),
             steps: Cell::new(0),
@@ -484,18 +488,24 @@ impl<'g> Context<'g> {
 
     /// Reports an unknown name with the nearest known one: once for each item, however often the item uses it.
     pub(crate) fn unknown<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
-        // the parser has reported a missing name
-        if name.node.is_empty() || !self.tells_more() || !self.unknown.insert(name.node.clone()) {
+        // a missing name has been reported, and so has what could not be made
+        let is_reported = name.node.is_empty() || self.is_unmade(&name.node);
+        if is_reported || !self.tells_more() || !self.unknown.insert(name.node.clone()) {
             return;
         }
         let message = format!("there is no {kind} `{}`", name.node);
         self.report(suggesting(Diagnostic::new(Code::UnknownName, name.span, message), name, known));
     }
 
+    /// Whether a name, or what it is a member of, is declared and could not be made, which has been reported.
+    pub(crate) fn is_unmade(&self, name: &str) -> bool {
+        self.unmade.contains(name.split('.').next().unwrap_or_default())
+    }
+
     /// Reports a name that has no value; one that the job gives farther down has none yet.
     pub(crate) fn unknown_value<'a>(&mut self, name: &Name, known: impl Iterator<Item = &'a str>) {
         let first = name.node.split('.').next().unwrap_or_default();
-        if self.unmade.contains(first) {
+        if self.is_unmade(first) {
             return;
         }
         let Some(place) = self.later.get(first).copied() else { return self.unknown(name, "value", known) };

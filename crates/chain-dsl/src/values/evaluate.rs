@@ -207,6 +207,16 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::NotConstant, path.span, message).help(help));
             return Value::Poison;
         }
+        // what is wrong with the whole has been reported
+        let known = path.segments.iter().take(path.segments.len() - 1);
+        let mut whole = String::new();
+        for segment in known {
+            whole.push_str(&segment.node);
+            if matches!(scope.get(&whole), Some(Value::Poison)) {
+                return Value::Poison;
+            }
+            whole.push('.');
+        }
         let name = crate::diagnostics::source::Spanned { node: joined.into_owned(), span: path.span };
         self.unknown_value(&name, scope.keys().map(String::as_str));
         Value::Poison

@@ -62,9 +62,9 @@ fn broken_statements_of_a_job() {
         }",
         "
         job j
-          machine m = cradle(radial: ERROR, tilt: ERROR)
-          machine n = ?()
-          tool c = face_mill(radius: ERROR)
+          machine m = cradle(radial: ERROR, tilt: ERROR, ERROR)
+          machine n = ?(ERROR)
+          tool c = face_mill(radius: ERROR, ERROR)
           mount c ?
           motion q: angle in ERROR..ERROR
           drive m.X ERROR

@@ -40,7 +40,7 @@ pub fn measure(
     let origin = Origin::of_compilation(&compilation);
     let named = request.surface.iter().map(|name| find(&jobs, name)).collect::<Result<Vec<_>, String>>()?;
     let session = Session::new(request.evaluator, monitor);
-    for job in solve::asked(&jobs, monitor)? {
+    for job in solve::asked((&jobs, &origin), monitor)? {
         let is_meant = |surface: &&GeneratedSurface<'_>| match named.is_empty() {
             true => surface.sample.is_some(),
             false => named.iter().any(|of| of.job.name == job.name && of.surface.name == surface.name),

@@ -225,7 +225,7 @@ fn made<'j, 'g>(
     let Some(solved) = solve::solve_surface(job, surface, wanted).transpose()? else {
         return Ok(Made { surface, points: Vec::new(), told: Vec::new() });
     };
-    let told = table::failures(job, std::slice::from_ref(&solved));
+    let told = table::failures((job, None), std::slice::from_ref(&solved));
     Ok(Made { surface, points: solved.points, told })
 }
 

@@ -133,7 +133,7 @@ fn plot_jobs(
             let subject = solved(&of_surfaces)?;
             session.check()?;
             drawn.extend(drawings(&subject, &of_surfaces, request).map_err(refused)?);
-            not_done.extend(table::failures(job, &subject.solved));
+            not_done.extend(table::failures((job, Some(origin)), &subject.solved));
             not_done.extend(cut::unknown(subject.solved.iter().map(Solved::left)));
             not_done.extend(travel::beyond(job, &subject.solved));
         }

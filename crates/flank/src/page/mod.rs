@@ -104,7 +104,7 @@ fn pages(
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, selection, monitor)?;
     let origin = Origin::of_compilation(&compilation);
-    for job in solve::asked(&jobs, monitor)? {
+    for job in solve::asked((&jobs, &origin), monitor)? {
         let wanted = wanted(Session::new(evaluator, monitor));
         stream::check_kept(job, &job.surfaces, wanted)?;
         let solved = job.surfaces.iter().filter_map(|surface| solve::solve_surface(job, surface, wanted));
@@ -114,7 +114,7 @@ fn pages(
         let mut dataset = solve::dataset(job, &solved, &lines, solve::header(&[job], selection, &origin));
         dataset.patches.iter_mut().for_each(|patch| patch.fields.retain(is_something));
         let tally = tally(&solved, &mut dataset.patches);
-        let mut not_done = table::failures(job, &solved);
+        let mut not_done = table::failures((job, Some(&origin)), &solved);
         let contacts = contacts::rolled(job, selection, wanted.session)?;
         contacts::add_gaps(&contacts, &solved, &mut dataset.patches);
         not_done.extend(contacts.iter().flat_map(contacts::Shown::refused));

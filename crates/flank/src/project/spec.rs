@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::{Compilation, Files, GeneratedSurface, Job, Sources, compile_request, read_other_file};
+use flank_chain_dsl::{
+    Compilation, Diagnostic, Files, GeneratedSurface, Job, Sources, Span, compile_request, read_other_file,
+};
 use flank_expr::Graph;
 use sha2::{Digest, Sha256};
 
@@ -125,6 +127,16 @@ impl Origin {
         Origin { hash, files, sources: compilation.sources.clone() }
     }
 
+    /// Findings in the texts that were read, which end an operation.
+    pub(crate) fn findings(&self, diagnostics: &[Diagnostic]) -> Failure {
+        Failure::Findings(Findings::new(diagnostics, &self.sources))
+    }
+
+    /// A place in the texts that were read.
+    pub(crate) fn place(&self, span: Span) -> Place {
+        Place::of_span(&self.sources, span)
+    }
+
     /// Messages about surfaces and solids of some jobs, with the places where these are named: `concave`, or with its job `pinion.concave`.
     pub(crate) fn located<Kind>(&self, jobs: &[&Job<'_>], mut messages: Vec<Message<Kind>>) -> Vec<Message<Kind>> {
         let surfaces = || jobs.iter().flat_map(|job| job.surfaces.iter().map(move |surface| (&job.name, surface)));
@@ -138,7 +150,7 @@ impl Origin {
             let want = || jobs.iter().flat_map(|job| &job.wants).find(|want| want.name == *name);
             let found =
                 surface.or_else(|| solid().map(|solid| solid.written)).or_else(|| want().map(|want| want.written));
-            message.place = found.map(|written| Place::of_span(&self.sources, written));
+            message.place = found.map(|written| self.place(written));
         }
         messages
     }

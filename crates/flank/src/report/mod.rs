@@ -61,8 +61,8 @@ pub fn report(
     Target::check(request)?;
     let graph = Graph::new();
     let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
-    let jobs = solve::asked(&jobs, monitor)?;
     let origin = Origin::of_compilation(&compilation);
+    let jobs = solve::asked((&jobs, &origin), monitor)?;
     let target = Target::of_request(request, &jobs)?;
     for job in jobs {
         let findings = Findings::of_job(job, &compilation.sources, &origin, (request, monitor))?;
@@ -178,7 +178,7 @@ impl<'j, 'g> Findings<'j, 'g> {
     /// What was asked for and not found.
     fn failures(&self) -> Vec<NotDone> {
         let solved = self.solved();
-        let mut all = table::failures(self.job, solved);
+        let mut all = table::failures((self.job, Some(self.origin)), solved);
         all.extend(cut::unknown(solved.iter().map(Solved::left)));
         all.extend(certify::failed(solved));
         all.extend(travel::beyond(self.job, solved));

@@ -84,7 +84,7 @@ fn why_missing(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<Stri
 }
 
 fn reasons_told(findings: &Findings<'_, '_>, solved: &Solved<'_, '_>) -> Vec<String> {
-    unsolved::reasons(findings.job, solved, &findings.subject.solved)
+    unsolved::reasons((findings.job, Some(findings.origin)), solved, &findings.subject.solved)
         .iter()
         .map(|reason| findings.spelled(reason))
         .collect()

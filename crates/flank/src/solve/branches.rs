@@ -121,8 +121,7 @@ pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
         }
         if solved.effort.is_given_up {
             let message = format!(
-                "no point of {name} was found at those of its sample that were tried ({} boxes looked at); a sample whose middle \
-                 lies on the surface needs fewer",
+                "no point of {name} was found at those of its sample that were tried ({} boxes looked at)",
                 solved.effort.boxes
             );
             out.push(Remark::new(RemarkKind::SearchGivenUp, name, message));

@@ -29,6 +29,7 @@ pub(crate) mod stream;
 pub(crate) mod summary;
 pub(crate) mod surface;
 pub(crate) mod table;
+pub(crate) mod touching;
 pub(crate) mod travel;
 pub(crate) mod trims;
 pub(crate) mod unsolved;
@@ -78,7 +79,7 @@ pub fn solve(request: &SolveRequest, monitor: &dyn Monitor, each: &mut dyn FnMut
         of_shown: false,
         session: Session::new(request.evaluator, monitor),
     };
-    for job in asked(&jobs, monitor)? {
+    for job in asked((&jobs, &origin), monitor)? {
         each(solved_job(job, (request, &origin), wanted, start)?);
     }
     Ok(())
@@ -109,7 +110,7 @@ fn solved_job(
     let files = write_files((&dataset, &outside), &solved, &faces, (&job.name, wanted.session), (request, origin))?;
     drop(outside);
     drop(dataset);
-    let mut not_done = table::failures(job, &solved);
+    let mut not_done = table::failures((job, Some(origin)), &solved);
     not_done.extend(cut::unknown(solved.iter().map(Solved::left)));
     not_done.extend(certify::failed(&solved));
     not_done.extend(travel::beyond(job, &solved));
@@ -142,12 +143,15 @@ fn solved_job(
 ///
 /// # Errors
 /// If none does.
-pub(crate) fn asked<'j, 'g>(jobs: &'j [Job<'g>], monitor: &dyn Monitor) -> Result<Vec<&'j Job<'g>>, Failure> {
+pub(crate) fn asked<'j, 'g>(
+    (jobs, origin): (&'j [Job<'g>], &Origin),
+    monitor: &dyn Monitor,
+) -> Result<Vec<&'j Job<'g>>, Failure> {
     let (asked, idle): (Vec<&Job<'g>>, Vec<&Job<'g>>) =
         jobs.iter().partition(|job| job.surfaces.iter().any(|surface| surface.sample.is_some()));
     let told = |job: &Job<'_>| format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name);
     if asked.is_empty() {
-        return Err(idle.iter().map(|job| told(job)).collect::<Vec<String>>().join("\n").into());
+        return Err(origin.findings(&idle.iter().map(|job| job.asks_for_nothing()).collect::<Vec<_>>()));
     }
     idle.iter().for_each(|job| monitor.remark(&Remark::new(RemarkKind::NoSample, &job.name, told(job))));
     Ok(asked)

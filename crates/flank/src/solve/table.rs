@@ -4,6 +4,7 @@ use flank_chain_dsl::{Dimension, GeneratedSurface, Job};
 
 use crate::project::quantity::Extent;
 use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::spec::Origin;
 use crate::solve::arrays::PointGrid;
 use crate::solve::branches;
 use crate::solve::certify;
@@ -91,17 +92,17 @@ fn summary(name: &str, surface: &GeneratedSurface<'_>, of: &Summary) -> PointSum
 }
 
 /// What was not done of points: branches that nothing chooses between, requirements that do not hold, points that are not solved.
-pub(crate) fn failures(job: &Job<'_>, solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
-    let unsolved = solved.iter().filter_map(|of| unsolved(job, of, solved));
+pub(crate) fn failures(of: (&Job<'_>, Option<&Origin>), solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
+    let unsolved = solved.iter().filter_map(|one| unsolved(of, one, solved));
     branches::ambiguous(solved).into_iter().chain(required::missed(solved)).chain(unsolved).collect()
 }
 
 /// How many points of a surface were asked for and not solved, and why.
-fn unsolved(job: &Job<'_>, solved: &Solved<'_, '_>, all: &[Solved<'_, '_>]) -> Option<NotDone> {
+fn unsolved(of: (&Job<'_>, Option<&Origin>), solved: &Solved<'_, '_>, all: &[Solved<'_, '_>]) -> Option<NotDone> {
     let (asked, name) = (solved.summary.asked, &solved.surface.name);
     let missing = asked - solved.summary.solved();
     (missing > 0).then(|| {
         let message = format!("not solved: {missing} of {asked} points of {name}");
-        NotDone::new(NotDoneKind::NotSolved, name, message).with(unsolved::reasons(job, solved, all))
+        NotDone::new(NotDoneKind::NotSolved, name, message).with(unsolved::reasons(of, solved, all))
     })
 }

@@ -1,8 +1,9 @@
 //! Why points of a surface were not solved, and where they are.
 
-use flank_chain_dsl::Job;
-use flank_solver::{CutBy, Outcome};
+use flank_chain_dsl::{GeneratedSurface, Job};
+use flank_solver::{CutBy, Outcome, SurfacePoint};
 
+use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::branches;
 use crate::solve::reach;
@@ -11,9 +12,14 @@ use crate::solve::secondary;
 use crate::solve::solved::Solved;
 use crate::solve::summary::Places;
 use crate::solve::surface::bound;
+use crate::solve::touching;
 
 /// Why points of a surface were not solved, with the number of points for each reason. `all` are the surfaces of the job that are sampled.
-pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>, all: &[Solved<'_, '_>]) -> Vec<String> {
+pub(crate) fn reasons(
+    (job, origin): (&Job<'_>, Option<&Origin>),
+    solved: &Solved<'_, '_>,
+    all: &[Solved<'_, '_>],
+) -> Vec<String> {
     let summary = &solved.summary;
     let mut reasons = Vec::new();
     let mut tell = |count: usize, text: String| {
@@ -34,17 +40,20 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>, all: &[Solved<'_, 
     let own = [(CutBy::ItsTool, summary.cut_by_tool)].into_iter();
     for (cutter, count) in own.chain(elsewhere).chain(trims).chain(blanks) {
         let is_whole = count == summary.asked;
+        // the others lie outside of the ranges, or are not found
+        let is_most = summary.solved() == 0 && 2 * count > summary.asked;
+        let turned = || is_most.then(|| turned_body((job, origin), solved.surface, &solved.points)).flatten();
         let side = match cutter {
             CutBy::ItsTool if is_whole && all.iter().any(|other| is_left_of_body(solved, other)) => {
                 "; nothing of the surface stays, though the same `body` leaves other pieces of it: on this work it cuts in the free"
+                    .to_string()
             }
-            CutBy::ItsTool if is_whole && is_inside_out(job, solved) => {
-                "; nothing of the surface stays: the tool's `body` may lie on the wrong side"
-            }
+            CutBy::ItsTool => turned().map_or_else(String::new, |body| format!("; {body}")),
             CutBy::ItsToolElsewhere(_) if is_whole => {
                 "; nothing of the surface stays: surfaces of the tool may cross within their ranges, and what lies beyond the crossing cuts"
+                    .to_string()
             }
-            _ => "",
+            _ => String::new(),
         };
         let depth = match cutter {
             CutBy::ItsToolElsewhere(by) => secondary::depth(&solved.positions, by),
@@ -77,7 +86,23 @@ pub(crate) fn reasons(job: &Job<'_>, solved: &Solved<'_, '_>, all: &[Solved<'_, 
         reasons.extend(reach::beside_piece(job, solved.surface));
     }
     reasons.extend(solved.needed.iter().map(|needed| needed.text(job, solved.surface)));
+    reasons.extend(touching::told(job, solved.surface, &solved.points));
     reasons
+}
+
+/// What may be wrong with a surface, as far as its points tell without what it took to find them.
+pub(crate) fn hints(
+    of: (&Job<'_>, Option<&Origin>),
+    surface: &GeneratedSurface<'_>,
+    points: &[SurfacePoint],
+) -> Vec<String> {
+    let is_cut = |point: &&SurfacePoint| point.outcome == Outcome::CutAway(CutBy::ItsTool);
+    let is_solved = points.iter().any(|point| point.outcome == Outcome::Solved);
+    let is_most = !is_solved && 2 * points.iter().filter(is_cut).count() > points.len();
+    let body = is_most.then(|| turned_body(of, surface, points)).flatten();
+    let needed = reach::needed(surface, points);
+    let needed = needed.iter().map(|needed| needed.text(of.0, surface));
+    body.into_iter().chain(needed).chain(touching::told(of.0, surface, points)).collect()
 }
 
 /// Whether another surface has points, which is made by another piece of the same surface of the tool: their steel lies on one side.
@@ -90,10 +115,23 @@ fn is_left_of_body(solved: &Solved<'_, '_>, other: &Solved<'_, '_>) -> bool {
     other.summary.solved() > 0 && of(solved).is_some_and(|whole| of(other) == Some(whole))
 }
 
-/// Whether the points of a surface that is cut away whole speak of a `body` on the wrong side.
-fn is_inside_out(job: &Job<'_>, solved: &Solved<'_, '_>) -> bool {
-    flank_solver::is_inside_out(&bound(job, solved.surface), &solved.points)
+/// That the `body` of the tool may lie on the wrong side, and where it is written, if those of its points speak of that which the tool cuts away.
+fn turned_body(
+    (job, origin): (&Job<'_>, Option<&Origin>),
+    surface: &GeneratedSurface<'_>,
+    points: &[SurfacePoint],
+) -> Option<String> {
+    let cut: Vec<SurfacePoint> =
+        points.iter().filter(|point| point.outcome == Outcome::CutAway(CutBy::ItsTool)).cloned().collect();
+    let is_turned = flank_solver::is_inside_out(&bound(job, surface), &cut);
+    let place = origin.zip(surface.generation.body).map_or_else(String::new, |(origin, body)| {
+        let place = origin.place(body);
+        let text = place.text.lines().next().unwrap_or_default().trim_end().to_string();
+        format!(", line {} of {}: `{text}`", place.line, place.file)
+    });
+    is_turned
         .expect("a job without errors leaves nothing unbound")
+        .then(|| format!("nothing of the surface stays: the tool's `body` may lie on the wrong side{place}"))
 }
 
 /// The curves through tables that end within the range of the unknown that they are asked for: beyond, the surface has no points.

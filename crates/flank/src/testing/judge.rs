@@ -133,6 +133,9 @@ fn of_status(tested: &Tested<'_, '_>, surfaces: &[usize], (status, at): (&str, &
                 surface.name
             ));
         }
+        if !others.is_empty() && status == Outcome::Solved.word() {
+            details.extend(tested.hints(*index));
+        }
     }
     let found = format!("{} of {} {status}", asked - wrong, units::counted(asked, "point"));
     Verdict { holds: wrong == 0 && asked > 0, found, details }
@@ -219,7 +222,11 @@ fn at_points<'g>(
     let Some(sample) = &surface.sample else { return Verdict::lost("no sample") };
     let points = tested.points(index);
     let values = values(tested, index, (sample, points), (value, known));
-    worst((sample, points), &values, (&surface.name, dimension), wanted)
+    let mut verdict = worst((sample, points), &values, (&surface.name, dimension), wanted);
+    if !verdict.holds {
+        verdict.details.extend(tested.hints(index));
+    }
+    verdict
 }
 
 /// A function of points at those that are solved.

@@ -7,8 +7,9 @@ use flank_solver::{Outcome, SurfacePoint};
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
+use crate::project::spec::Origin;
 use crate::project::units;
-use crate::solve::{self, SolveOptions, limits};
+use crate::solve::{self, SolveOptions, limits, unsolved};
 
 /// Rows and columns of a sample at which expectations are checked: ends and middle among them.
 const MOST_LINES: usize = 7;
@@ -21,6 +22,9 @@ pub(super) struct Tested<'j, 'g> {
     solved: Vec<OnceCell<Counted>>,
     /// The points of lists, by surface and places: several columns of a table are compared one after the other.
     lists: RefCell<Vec<Listed>>,
+    /// Of which surfaces it was told what may be wrong with them.
+    told: RefCell<Vec<usize>>,
+    origin: &'j Origin,
     pub(super) session: Session<'j>,
 }
 
@@ -62,11 +66,13 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
 }
 
 impl<'j, 'g> Tested<'j, 'g> {
-    pub(super) fn new(job: &'j Job<'g>, session: Session<'j>) -> Tested<'j, 'g> {
+    pub(super) fn new(job: &'j Job<'g>, origin: &'j Origin, session: Session<'j>) -> Tested<'j, 'g> {
         Tested {
             job,
             solved: job.surfaces.iter().map(|_| OnceCell::new()).collect(),
             lists: RefCell::default(),
+            told: RefCell::default(),
+            origin,
             session,
         }
     }
@@ -93,6 +99,16 @@ impl<'j, 'g> Tested<'j, 'g> {
     /// The points of the sample of a surface; none if it has no sample.
     pub(super) fn points(&self, index: usize) -> &[SurfacePoint] {
         &self.counted(index).points
+    }
+
+    /// What may be wrong with a surface, as far as the points of its sample tell: for the first expectation that asks.
+    pub(super) fn hints(&self, index: usize) -> Vec<String> {
+        let mut told = self.told.borrow_mut();
+        if told.contains(&index) {
+            return Vec::new();
+        }
+        told.push(index);
+        unsolved::hints((self.job, Some(self.origin)), self.surface(index), self.points(index))
     }
 
     /// Evaluations of the equations that the sample of a surface took, and boxes of the search for its branch.

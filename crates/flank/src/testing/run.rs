@@ -113,7 +113,7 @@ fn tested<'g>(
     let mut snapshots = Vec::new();
     for job in jobs.iter().filter(|job| request.takes(&job.name)) {
         session.check()?;
-        let of_job = Tested::new(job, session);
+        let of_job = Tested::new(job, &origin, session);
         of_job.solve_looked_at();
         let known = Known::new(&of_job, graph, (&jobs, which, &origin));
         let mut expectations = required(compilation, &of_job);

@@ -5,6 +5,9 @@ use std::fmt::{self, Display};
 use crate::project::units;
 use crate::testing::result::{TestResult, TestedSnapshot, TestedSpec};
 
+/// Characters of an expectation that are shown.
+const LONGEST: usize = 100;
+
 impl Display for TestResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.specs.iter().try_for_each(|spec| write!(f, "{spec}"))?;
@@ -56,7 +59,7 @@ impl Display for TestedSpec {
         for item in &self.items {
             for expectation in item.expectations.iter().filter(|expectation| !expectation.holds) {
                 let at = format!("{}:{}", expectation.place.line, expectation.place.column);
-                writeln!(f, "  {}:{at}: {}", item.name, expectation.expected)?;
+                writeln!(f, "  {}:{at}: {}", item.name, shortened(&expectation.expected))?;
                 writeln!(f, "    found: {}", expectation.found)?;
                 expectation.details.iter().try_for_each(|line| writeln!(f, "    {line}"))?;
             }
@@ -64,6 +67,19 @@ impl Display for TestedSpec {
         let differs = self.snapshot.iter().filter(|snapshot| !snapshot.is_same);
         differs.into_iter().try_for_each(|snapshot| write!(f, "{snapshot}"))
     }
+}
+
+/// An expectation that is too long to be read on one line, without its middle; its tolerance stays.
+fn shortened(expected: &str) -> String {
+    let size = expected.chars().count();
+    if size <= LONGEST {
+        return expected.to_string();
+    }
+    let tail = expected.rfind(" within ").or_else(|| expected.rfind(" in ")).unwrap_or(expected.len());
+    let bracket = usize::from(expected[..tail].ends_with([']', ')']));
+    let tail = Some(&expected[tail - bracket..]).filter(|tail| tail.chars().count() < LONGEST / 2).unwrap_or_default();
+    let head: String = expected.chars().take(LONGEST - 1 - tail.chars().count()).collect();
+    format!("{}…{tail}", head.trim_end())
 }
 
 impl Display for TestedSnapshot {

@@ -14,6 +14,9 @@ const LONGER: f64 = 2.0;
 /// No step is shorter than this share of the way. A fold is approached in steps that leave a sixteenth of what is left, so that this is
 /// nearer than a point can be told from the fold itself.
 const SHORTEST: f64 = 1e-4;
+/// A way ends in a fold or a crossing if its end is nearer than that to where it came, and the determinant less than this share of what it is
+/// there. At a fold it goes with the root of the distance: the fold is nearer than 10⁻¹⁰ of the way.
+const VANISHED: f64 = 1e-3;
 /// Steps that are tried before the way is given up.
 const MOST_TRIES: usize = 48;
 /// Between the ends of a step the determinant is what a straight line says, but for this share of it. Where two branches cross, it
@@ -32,6 +35,8 @@ pub(crate) struct Path<'r> {
     guess: Vec<f64>,
     /// The last attempt that failed; at the end what was found.
     last: Solution,
+    /// The determinant there.
+    determinant: f64,
     tries: usize,
     stage: Stage<'r>,
     pub(crate) evaluations: u64,
@@ -81,6 +86,7 @@ impl<'r> Path<'r> {
             share: 1.0,
             guess: start,
             last: Solution::never_reached(ranges),
+            determinant: f64::NAN,
             tries: 0,
             stage: Stage::Begin,
             evaluations: 0,
@@ -139,7 +145,7 @@ impl<'r> Path<'r> {
                 // the shorter one tells; the other one leads far away where a fold is near
                 let leads = if there.0 <= back.0 { there.1 } else { back.1 };
                 self.evaluations += 2;
-                if leads { self.look_halfway(end) } else { self.shorten(end.solution) }
+                if leads { self.look_halfway(end) } else { self.shorten(end) }
             }
             Stage::Halfway(end, mut descent) => {
                 if goes_on(&mut descent, at) {
@@ -148,7 +154,7 @@ impl<'r> Path<'r> {
                     let between = self.ended(descent, self.halfway(), at, conditions);
                     let determinants = [self.at.determinant, end.determinant];
                     let is_alike = is_between(determinants, 0.5, between.determinant);
-                    if between.solution.is_root() && is_alike { self.arrive(end) } else { self.shorten(end.solution) }
+                    if between.solution.is_root() && is_alike { self.arrive(end) } else { self.shorten(end) }
                 }
             }
             Stage::Arrival(solution) => {
@@ -203,7 +209,7 @@ impl<'r> Path<'r> {
         let ratio = end.determinant / self.at.determinant;
         let is_alike = ratio < SAME_DETERMINANT && ratio * SAME_DETERMINANT > 1.0;
         if !end.solution.is_root() || !is_alike {
-            self.shorten(end.solution);
+            self.shorten(end);
         } else if distance(&self.at.unknowns, &end.solution.unknowns, self.ranges) <= NEAR {
             self.look_halfway(end);
         } else {
@@ -238,8 +244,8 @@ impl<'r> Path<'r> {
     }
 
     /// After a step that did not.
-    fn shorten(&mut self, solution: Solution) {
-        self.last = solution;
+    fn shorten(&mut self, end: End) {
+        (self.last, self.determinant) = (end.solution, end.determinant);
         let length = SHORTER * (self.share - self.at.share);
         self.guess.clone_from(&self.at.unknowns);
         if length < SHORTEST { self.give_up() } else { self.go_to(self.at.share + length) }
@@ -255,7 +261,10 @@ impl<'r> Path<'r> {
     }
 
     fn give_up(&mut self) {
-        if self.last.is_root() {
+        let is_near = self.share == 1.0 && SHORTER * (1.0 - self.at.share) < SHORTEST;
+        if self.last.is_root() && is_near && self.determinant.abs() < VANISHED * self.at.determinant.abs() {
+            self.last.outcome = Outcome::Singular;
+        } else if self.last.is_root() {
             // a root, but not one that the way leads to, or not of this target: its residual would mislead
             self.last.outcome = Outcome::NotConverged { iterations: self.last.iterations };
             self.last.residual = f64::NAN;

@@ -6,6 +6,8 @@ mod pose;
 mod quantities;
 mod table;
 
+use std::collections::HashSet;
+
 use flank_expr::Expr;
 
 use crate::diagnostics::Diagnostic;
@@ -64,6 +66,20 @@ fn never_fails(context: &mut Context<'_>, span: Span, why: &str) {
     context.report(Diagnostic::new(Code::NeverFails, span, message).help(help));
 }
 
+/// Whether a job has a sample of a surface, or of all pieces of it, under no name of its own.
+fn has_sample(job: &ast::Job, path: &ast::Path) -> bool {
+    let wanted = path.joined();
+    let is_of = |of: &ast::Sampled| {
+        let piece = wanted.strip_prefix(&of.surface.joined());
+        of.name.is_none() && piece.is_some_and(|piece| piece.is_empty() || piece.starts_with('.'))
+    };
+    let mut samples = job.statements.iter().filter_map(|statement| match statement {
+        JobStatement::Sample(sample) => Some(sample),
+        _ => None,
+    });
+    samples.any(|sample| sample.surfaces.iter().any(is_of))
+}
+
 /// The errors that a job is to have; reports codes that there are not.
 pub(crate) fn errors(context: &mut Context<'_>, job: &ast::Job) -> Vec<ExpectedError> {
     let mut found = Vec::new();
@@ -84,12 +100,29 @@ impl<'g> Builder<'_, 'g> {
     /// All that a job and its machines expect.
     pub(super) fn expectations(&self, context: &mut Context<'g>, job: &ast::Job) -> Vec<Expectation<'g>> {
         let mut found = self.of_machines(context);
+        context.unmade.extend(self.lost(job));
         for statement in &job.statements {
             let JobStatement::Expect(written) = statement else { continue };
             let what = self.expected(context, written, job);
             found.extend(what.map(|what| Expectation { what, written: written.span }));
         }
         found
+    }
+
+    /// The names that the job declares and that stand for nothing, since something is wrong with them (which has been reported).
+    fn lost<'j>(&self, job: &'j ast::Job) -> impl Iterator<Item = String> + 'j {
+        let surfaces = self.surfaces.iter().map(|(surface, _)| surface.name.split('.').next().unwrap_or_default());
+        let contacts = self.contacts.iter().map(|contact| contact.name.as_str());
+        let solids = self.solids.iter().map(|solid| solid.name.as_str());
+        let made: HashSet<String> = surfaces.chain(contacts).chain(solids).map(str::to_string).collect();
+        let names = job.statements.iter().flat_map(|statement| match statement {
+            JobStatement::Surface(surface) => surface.names.iter().collect(),
+            JobStatement::Sample(sample) => sample.surfaces.iter().filter_map(|of| of.name.as_ref()).collect(),
+            JobStatement::Contact(contact) => vec![&contact.name],
+            JobStatement::Solid(solid) => vec![&solid.name],
+            _ => Vec::new(),
+        });
+        names.map(|name| name.node.clone()).filter(move |name| !made.contains(name))
     }
 
     fn expected(&self, context: &mut Context<'g>, written: &ast::Expectation, job: &ast::Job) -> Option<Expected<'g>> {
@@ -129,10 +162,8 @@ impl<'g> Builder<'_, 'g> {
         if self.surfaces[index].0.sample.is_some() {
             return Some(index);
         }
-        let is_of = |sampled: &ast::Sampled| sampled.name.is_none() && sampled.surface.joined() == path.joined();
-        let is_sample = |statement: &JobStatement| matches!(statement, JobStatement::Sample(sample) if sample.surfaces.iter().any(is_of));
-        // one that could not be made has been reported
-        if job.statements.iter().any(is_sample) && context.has_errors() {
+        let is_reported = context.has_errors() && has_sample(job, path);
+        if is_reported || !context.unsampled.insert(path.joined()) {
             return None;
         }
         let message = format!("`{}` is not sampled: nothing says at which points it is expected", path.joined());

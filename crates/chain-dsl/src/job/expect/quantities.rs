@@ -224,6 +224,7 @@ impl<'g> Builder<'_, 'g> {
         };
         let ExpressionKind::Path(of) = &first.value.kind else { return wrong_call(context, call, what, example) };
         let other = match &second.value.kind {
+            ExpressionKind::Path(path) if context.is_unmade(&path.segments[0].node) => return None,
             ExpressionKind::Path(path) => self.surface_named(path, job),
             _ => None,
         };

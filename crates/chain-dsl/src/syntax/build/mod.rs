@@ -26,7 +26,7 @@ use super::scan::Scan;
 pub(super) fn file(scan: &Scan, pairs: Pairs<'_, Rule>) -> (ast::File, Vec<Diagnostic>) {
     let mut build = Build::new(scan);
     let items = pairs.filter_map(|pair| build.item(pair)).collect();
-    (ast::File { doc: scan.file_doc(), items }, build.diagnostics)
+    (ast::File { doc: scan.file_doc(), items, lacks_files: false }, build.diagnostics)
 }
 
 /// Builds trees from pairs of a piece of the text.

@@ -10,7 +10,7 @@ use super::super::scan::Kind;
 use super::super::words::{self, Reserved};
 use super::Mistake;
 
-impl Mistake<'_> {
+impl<'s> Mistake<'s> {
     /// `20 mmm`
     pub(super) fn not_a_unit(&self) -> Option<Diagnostic> {
         let unit = self.kind_before() == Some(Kind::Number)
@@ -47,19 +47,16 @@ impl Mistake<'_> {
         }
         let name = wants(&[Rule::name, Rule::path]);
         let value = wants(&[Rule::expression, Rule::value, Rule::argument]);
+        if let Some((word, is_new)) = self.keyword_as_name() {
+            let message = format!("`{word}` is a word of the language and cannot be a name");
+            let other = format!("{word}_{}", expected::noun(self.scan.say(self.range.start)));
+            let help = format!("choose another, such as `{other}`");
+            return Some(match is_new {
+                true => self.here(message).help(help).cure(format!("write `{other}`"), self.place(), other),
+                false => self.here(message),
+            });
+        }
         match reserved {
-            Reserved::Keyword if self.found > self.range.start && self.introduces() => None,
-            Reserved::Keyword if name || value && words::begins_statement(word) => {
-                let message = format!("`{word}` is a word of the language and cannot be a name");
-                let statement = self.scan.say(self.range.start);
-                let is_new = self.found == self.range.start + 1 && words::defines(statement);
-                let other = format!("{word}_{}", expected::noun(statement));
-                let help = format!("choose another, such as `{other}`");
-                Some(match is_new {
-                    true => self.here(message).help(help).cure(format!("write `{other}`"), self.place(), other),
-                    false => self.here(message),
-                })
-            }
             Reserved::Unit if name => Some(self.here(format!("`{word}` is a unit and cannot be a name"))),
             Reserved::Unit if value || wants(&[Rule::infix]) => {
                 let written = if value { format!("1 {word}") } else { format!("* 1 {word}") };
@@ -74,6 +71,19 @@ impl Mistake<'_> {
             }
             _ => None,
         }
+    }
+
+    /// A word of the language itself where a name belongs, and whether that is to be a new one.
+    pub(in super::super) fn keyword_as_name(&self) -> Option<(&'s str, bool)> {
+        let word = self.say();
+        let wants = |rules: &[Rule]| rules.iter().any(|rule| self.expected.contains(rule));
+        let is_value = wants(&[Rule::expression, Rule::value, Rule::argument]) && words::begins_statement(word);
+        let is_one = self.kind() == Some(Kind::Word)
+            && words::reserved(word) == Some(Reserved::Keyword)
+            && !(self.found > self.range.start && self.introduces())
+            && (is_value || wants(&[Rule::name, Rule::path]));
+        let is_new = self.found == self.range.start + 1 && words::defines(self.scan.say(self.range.start));
+        is_one.then_some((word, is_new))
     }
 
     /// Whether the word does what it is there for, so that something is missing before it.

@@ -244,7 +244,8 @@ impl<'s> Recover<'s> {
             return statements.push(ToolStatement::Profile(self.profile(false)));
         }
         self.at = pieces::unknown_end(scan, first);
-        block.add_broken(scan, meant.unwrap_or("let"), first..self.at);
+        let otherwise = if scan.say(first + 2) == "on" { "mount" } else { "let" };
+        block.add_broken(scan, meant.unwrap_or(otherwise), first..self.at);
     }
 
     /// A profile, segment by segment.

@@ -25,14 +25,14 @@ use super::{limits, pieces, salvage, words};
 pub(super) fn file(scan: &Scan, failure: Option<&Failure>) -> (File, Vec<Diagnostic>) {
     let mut recover = Recover::new(scan);
     recover.items();
-    let mut diagnostics = recover.build.diagnostics;
+    let mut diagnostics = recover.without_uses_of_misnamed();
     if diagnostics.is_empty() {
         let found = failure.map_or(0, |failure| scan.token_at(failure.place));
         let message = format!("{} does not belong here", scan.quote(found));
         diagnostics.push(Diagnostic::new(Code::Syntax, scan.place(found), message));
     }
     diagnostics.sort_by_key(|diagnostic| diagnostic.span.start);
-    (File { doc: scan.file_doc(), items: recover.items }, diagnostics)
+    (File { doc: scan.file_doc(), items: recover.items, lacks_files: recover.lacks_files }, diagnostics)
 }
 
 /// An expression that begins at a place, behind nothing but white space.
@@ -64,11 +64,34 @@ struct Recover<'s> {
     items: Vec<Item>,
     /// How many items that stand inside others are being read.
     nested: usize,
+    /// Whether a `use` could not be read.
+    lacks_files: bool,
+    /// Words of the language that are to be new names, which is reported.
+    misnamed: Vec<&'s str>,
+    /// Such words where names are used, each with the number of its report.
+    misused: Vec<(usize, &'s str)>,
 }
 
 impl<'s> Recover<'s> {
     fn new(scan: &'s Scan<'s>) -> Recover<'s> {
-        Recover { scan, build: Build::new(scan), at: 0, items: Vec::new(), nested: 0 }
+        Recover {
+            scan,
+            build: Build::new(scan),
+            at: 0,
+            items: Vec::new(),
+            nested: 0,
+            lacks_files: false,
+            misnamed: Vec::new(),
+            misused: Vec::new(),
+        }
+    }
+
+    /// The reports; a name that cannot be one is wrong where it is defined, and not once more where it is used.
+    fn without_uses_of_misnamed(&mut self) -> Vec<Diagnostic> {
+        let reports = std::mem::take(&mut self.build.diagnostics).into_iter().enumerate();
+        let follows =
+            |number: usize| self.misused.iter().any(|(report, word)| *report == number && self.misnamed.contains(word));
+        reports.filter(|(number, _)| !follows(*number)).map(|(_, report)| report).collect()
     }
 
     fn items(&mut self) {
@@ -114,12 +137,14 @@ impl<'s> Recover<'s> {
         if matches!(word, "use" | "fn") || is_variant {
             let end = pieces::flat_item_end(self.scan, self.at);
             let range = self.at..end;
+            let mistakes = self.build.diagnostics.len();
             let parsed = if strict { self.piece(Rule::item_piece, range.clone()) } else { None };
             let item = match parsed {
                 Some(pair) => self.build.item(pair),
                 None => salvage::flat_item(self.scan, word, range.clone()),
             };
             self.items.extend(item);
+            self.lacks_files |= word == "use" && (!strict || self.build.diagnostics.len() > mistakes);
             self.at = self.at.max(if strict { 0 } else { end });
         } else {
             self.block_item(word, strict);
@@ -148,6 +173,11 @@ impl<'s> Recover<'s> {
         if whole.is_some() && scan.kind(mistake.found) == Some(Kind::Word) {
             self.at = mistake.found;
         } else {
+            match mistake.keyword_as_name() {
+                Some((word, true)) => self.misnamed.push(word),
+                Some((word, false)) => self.misused.push((self.build.diagnostics.len(), word)),
+                None => {}
+            }
             self.build.diagnostics.push(mistake.explain());
         }
         let before = whole.map(|end| &text[..end as usize - start])?;
@@ -170,6 +200,7 @@ impl<'s> Recover<'s> {
         let word = self.scan.kind(self.at) == Some(Kind::Word);
         let meant = closest(self.say(), words::ITEMS.iter().copied()).filter(|_| word);
         let Some(meant) = meant else {
+            self.lacks_files |= [0, 1].iter().any(|k| self.scan.kind(self.at + k) == Some(Kind::Text));
             self.report_sign(LIST, "a file consists of machines, tools, jobs and functions");
             self.at = pieces::next_item(self.scan, self.at + 1);
             return;

@@ -19,7 +19,7 @@ use crate::project::monitor::Monitor;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::requests::DeriveRequest;
 use crate::project::session::Session;
-use crate::project::spec;
+use crate::project::spec::{self, Origin};
 
 /// What the compiler built, stage by stage; or the axes of another machine in closed form; or how many operations a point takes.
 ///
@@ -30,9 +30,9 @@ pub fn derive(request: &DeriveRequest, monitor: &dyn Monitor) -> Result<DeriveRe
     if let Some(to) = &request.to {
         return carried(&graph, to, (request, monitor));
     }
-    let (_, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
+    let (compilation, jobs) = spec::jobs(&graph, &request.jobs, monitor)?;
     if request.cost {
-        return cost(&jobs);
+        return cost((&jobs, &Origin::of_compilation(&compilation)));
     }
     let page = |job: &Job<'_>| DerivationPage { job: job.name.clone(), page: derivation(job, style(request)) };
     Ok(shown(jobs.iter().map(page).collect(), Vec::new(), request))
@@ -106,14 +106,12 @@ fn explicit_page<'g>(job: &Job<'g>, carried: &Conversion<'_, 'g>, explicit: &Exp
 }
 
 /// How many operations the points of each sampled surface take.
-fn cost(jobs: &[Job<'_>]) -> Result<DeriveResult, Failure> {
+fn cost((jobs, origin): (&[Job<'_>], &Origin)) -> Result<DeriveResult, Failure> {
     let of = |job: &Job<'_>| {
         let surfaces: Vec<SurfaceCost> =
             job.surfaces.iter().filter_map(|surface| SurfaceCost::of_surface(job, surface)).collect();
         match surfaces.is_empty() {
-            true => {
-                Err(format!("job `{}` asks for no points: add a `sample` for one of its surfaces", job.name).into())
-            }
+            true => Err(origin.findings(&[job.asks_for_nothing()])),
             false => Ok(JobCost { job: job.name.clone(), surfaces }),
         }
     };

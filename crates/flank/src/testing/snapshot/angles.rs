@@ -7,24 +7,32 @@ use crate::testing::snapshot::text::{Kept, KeptSurface};
 
 /// Below, arc minutes, nothing is told.
 const LEAST: f64 = 5e-4;
+/// How much the normals of a cylindrical gear's flank differ along its lines on cylinders, where modifications turn them: 1.1 deg. Those of
+/// a face gear, whose profiles these lines are, differ by its pressure angles.
+const MODIFIED: f64 = 0.02;
 
 /// Pressure angle along the profile, helix or spiral angle along the tooth, of slopes from the first row to the last and from the first column
 /// to the last, mm. The labels are the sample's: others than these have no angle.
 ///
 /// A change of the pressure angle alone leaves lines along the teeth where they are, so that a slope is held against the way across these lines.
+///
+/// Where a sample goes by radius and height, nothing but the points says which of them runs along the teeth: along the axis on a helicoid, as
+/// the flanks of spur and helical gears and of worms are. Others have no angle, such as those of a face gear, whose teeth run along the radius.
 pub(super) fn turned(surface: &KeptSurface, labels: &[String; 2], slopes: [f64; 2]) -> String {
     let [rows, columns] = surface.counts;
     let middles: [Vec<&Kept>; 2] = [
         (0..rows).map(|row| &surface.points[row * columns + columns / 2]).collect(),
         (0..columns).map(|column| &surface.points[rows / 2 * columns + column]).collect(),
     ];
+    let by_radius = labels.iter().position(|label| label == "rho");
+    let is_helicoid = by_radius.is_some_and(|k| is_helicoid(surface, k));
     let mut out = String::new();
     for k in 0..2 {
         let [along, other] = [&middles[k], &middles[1 - k]];
         let (what, length) = match labels[k].as_str() {
-            "rho" => ("pressure angle", way(along, radius, across_cylinders)),
+            "rho" if is_helicoid => ("pressure angle", way(along, radius, across_cylinders)),
             "root -> tip" => ("pressure angle", (chord(along) - project(chord(along), chord(other))).norm()),
-            "z" if labels[1 - k] == "rho" => ("helix angle", way(along, height, on_cylinder)),
+            "z" if is_helicoid => ("helix angle", way(along, height, on_cylinder)),
             "toe -> heel" => ("spiral angle", chord(along).norm()),
             _ => continue,
         };
@@ -34,6 +42,31 @@ pub(super) fn turned(surface: &KeptSurface, labels: &[String; 2], slopes: [f64; 
         }
     }
     out
+}
+
+/// Whether the normals along each line at one radius are the same, seen from the axis. `by_radius` is 0 where rows are at one radius, 1 where columns are.
+fn is_helicoid(surface: &KeptSurface, by_radius: usize) -> bool {
+    let [rows, columns] = surface.counts;
+    let solved = |at: usize| Some(&surface.points[at]).filter(|point| point.is_solved());
+    let line = |k: usize| -> Vec<[f64; 3]> {
+        let on_line: Vec<usize> = match by_radius {
+            0 => (0..columns).map(|column| k * columns + column).collect(),
+            _ => (0..rows).map(|row| row * columns + k).collect(),
+        };
+        let seen = |point: &Kept| {
+            let [radial, around] = normal_there(point);
+            [radial, around, point.normal[2]]
+        };
+        on_line.into_iter().filter_map(solved).map(seen).collect()
+    };
+    (0..surface.counts[by_radius]).map(line).all(|normals| {
+        let differ = |k: usize| {
+            let ends = normals.iter().map(|normal| normal[k]);
+            let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            high - low
+        };
+        (0..3).all(|k| differ(k) <= MODIFIED || normals.is_empty())
+    })
 }
 
 fn chord(points: &[&Kept]) -> Vector3<f64> {
