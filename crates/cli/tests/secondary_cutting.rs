@@ -381,6 +381,12 @@ fn what_was_not_looked_at_is_said() {
         helical.iter().all(|(_, unseen)| unseen.as_str().unwrap().contains("several motions at once")),
         "{helical:?}"
     );
+    // the crest of its hob is a band about a cylinder, whose turns are equally near at many places: they cost no more than others
+    let bevel = told("specs/bodies/beveloid_body.chain", &[]);
+    assert!(
+        bevel.len() > 1 && bevel.iter().all(|(_, unseen)| unseen.as_str().is_none_or(|why| !why.contains("too long"))),
+        "{bevel:?}"
+    );
     let wheel = told("specs/double_envelope/hourglass_worm_wheel.chain", &[]);
     assert!(wheel[0].1.is_null() && wheel[1].1.as_str().unwrap().contains("generated itself"), "{wheel:?}");
     let forms = told("tests/surfaces/specs/ring_by_equation.chain", &[]);

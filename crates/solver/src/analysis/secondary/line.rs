@@ -1,10 +1,11 @@
 //! The way of one point of the work through the tool's frame while one motion runs, and where it enters the steel.
 
-use flank_expr::LANES;
+use flank_expr::{InstructionSet, LANES};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::analysis::secondary::SecondaryCutting;
-use crate::analysis::secondary::net::{Foot, Found, Near, Piece, Seen, Side};
+use crate::analysis::secondary::cells::Near;
+use crate::analysis::secondary::net::{Foot, Found, Piece, Seen, Side};
 use crate::equations::runner::Runner;
 
 /// A point less deep in the steel than this, mm, is only touched: points are good to this.
@@ -13,6 +14,8 @@ const TOUCH: f64 = 1e-9;
 const LONGER: f64 = 1.25;
 /// Where the cubic through clearances and their slopes stays above this share of the smaller one, so does the clearance.
 const CLEAR: f64 = 0.3;
+/// A way is short beside the distance of two parts of a piece that it leads by if it is no longer than this share of it.
+const APART: f64 = 0.5;
 /// Halvings of the way between two places. About a clearance that is least they find a depth of [`TOUCH`].
 const MOST_HALVINGS: u32 = 14;
 /// The depth is measured to feet that lie beyond the end of a piece by no more than this share of it.
@@ -159,7 +162,15 @@ impl<'c> Seen<'c> {
     /// The places of some ways, one way after the other, as the piece sees them, those that are beside it with their feet. Also how many feet
     /// were looked for.
     pub(super) fn sights(&mut self, ways: &[Vec<Place>]) -> (Vec<Vec<Option<Sight>>>, u64) {
-        let mut sights: Vec<Vec<Option<Sight>>> = ways.iter().map(|places| self.piece.sights(places)).collect();
+        let mut sights: Vec<Vec<Option<Sight>>> = Vec::with_capacity(ways.len());
+        for places in ways {
+            let beside = sights.last().map_or(&[][..], Vec::as_slice);
+            let next = InstructionSet::widest().dispatch(
+                #[inline(always)]
+                || self.piece.sights(places, beside),
+            );
+            sights.push(next);
+        }
         let mut wanted: Vec<&mut Sight> = Vec::new();
         for way in &mut sights {
             let is_near = |pair: [Option<&Sight>; 2]| matches!(pair, [Some(a), Some(b)] if a.may_meet(b));
@@ -178,10 +189,13 @@ impl<'c> Seen<'c> {
 }
 
 impl Piece {
-    /// Some places, one after the other; none of those so far from the piece that it cannot be met before the next or since the last.
-    fn sights(&self, places: &[Place]) -> Vec<Option<Sight>> {
+    /// Some places, one after the other; none of those so far from the piece that it cannot be met before the next or since the last. The
+    /// way of another point may be seen that is `beside` this one.
+    #[inline(always)]
+    fn sights(&self, places: &[Place], beside: &[Option<Sight>]) -> Vec<Option<Sight>> {
         let mut before: Option<Near> = None;
-        let sight = |number: usize| {
+        let mut sights = Vec::with_capacity(places.len());
+        for number in 0..places.len() {
             let (place, last, next) = (&places[number], places[..number].last(), places.get(number + 1));
             let to = |other: Option<&Place>| {
                 other.map_or([0.0; 2], |other| [other.speed, (other.motion - place.motion).abs()])
@@ -189,11 +203,12 @@ impl Piece {
             let ([a, since], [b, until]) = (to(last), to(next));
             let most = LONGER * place.speed.max(a).max(b) * since.max(until);
             let is_far = self.least(&place.point) > most;
-            let near = if is_far { None } else { self.near(&place.point, most, before.as_ref()) };
+            let same = beside.get(number).and_then(Option::as_ref).map(|sight| &sight.near);
+            let near = if is_far { None } else { self.near(&place.point, most, [same, before.as_ref()]) };
             before = near.or(before);
-            near.map(|near| Sight { place: *place, near, found: None })
-        };
-        (0..places.len()).map(sight).collect()
+            sights.push(near.map(|near| Sight { place: *place, near, found: None }));
+        }
+        sights
     }
 }
 
@@ -230,7 +245,10 @@ impl Way<'_, '_> {
         let own = std::mem::replace(&mut self.motions[self.running], motion);
         let place = self.poses.at(&self.motions, self.running).place(motion, &self.point);
         self.motions[self.running] = own;
-        let near = self.seen.piece.near(&place.point, f64::INFINITY, Some(&other.near))?;
+        let near = InstructionSet::widest().dispatch(
+            #[inline(always)]
+            || self.seen.piece.near(&place.point, f64::INFINITY, [Some(&other.near), None]),
+        )?;
         Some(Sight { place, near, found: None })
     }
 
@@ -302,11 +320,43 @@ impl Way<'_, '_> {
     }
 
     fn halved(&mut self, a: &mut Sight, b: &mut Sight, halvings: u32) -> Option<Cut> {
-        if halvings >= MOST_HALVINGS {
+        if halvings >= MOST_HALVINGS || self.is_clear_of_both(a, b) {
             return None;
         }
         let mut middle = self.sight_at(0.5 * (a.place.motion + b.place.motion), a)?;
         self.between(a, &mut middle, halvings + 1).or_else(|| self.between(&mut middle, b, halvings + 1))
+    }
+
+    /// Whether two places are nearest to parts of the piece that lie apart, as the turns of a thread do, and neither part is met between
+    /// them.
+    fn is_clear_of_both(&mut self, a: &mut Sight, b: &mut Sight) -> bool {
+        let way = a.way_to(b);
+        if way > APART * (a.near.on - b.near.on).norm() {
+            return false;
+        }
+        let mut on = |part: &Sight, other: &Sight| {
+            let mut moved = Sight { near: part.near, found: None, ..*other };
+            (self.foot(&mut { *part }), self.foot(&mut moved))
+        };
+        let (own_a, b_at_a) = on(a, b);
+        let (own_b, a_at_b) = on(b, a);
+        let span = b.place.motion - a.place.motion;
+        self.is_clear([own_a, b_at_a], [&a.place, &b.place], span)
+            && self.is_clear([a_at_b, own_b], [&a.place, &b.place], span)
+    }
+
+    /// Whether feet on one part of the piece, and the sides on which they lie, say that it is not met between two places.
+    fn is_clear(&self, feet: [(Option<Foot>, Option<Side>); 2], places: [&Place; 2], span: f64) -> bool {
+        let [(foot_a, side_a), (foot_b, side_b)] = feet;
+        if let (Some(foot_a), Some(foot_b)) = (foot_a, foot_b) {
+            let clear = [foot_a.clearance, foot_b.clearance];
+            let slopes = [foot_a.rate(places[0].velocity) * span, foot_b.rate(places[1].velocity) * span];
+            let nearer = clear[0].min(clear[1]);
+            return nearer > TOUCH
+                && self.seen.piece.are_beside(foot_a.at, foot_b.at)
+                && least_of_cubic(clear, slopes) > CLEAR * nearer;
+        }
+        matches!((side_a, side_b), (Some(a), Some(b)) if (0..2).any(|k| a[k] * b[k] > 0))
     }
 
     /// Beside a contact, where the clearance is zero and least, what it is over the square of the way from there tells whether it

@@ -4,6 +4,7 @@
 //! the tool's frame as the motions have it, and is checked against all pieces of the tool's surface: where it crosses one, the tool's
 //! steel has been on both sides of it.
 
+mod cells;
 mod grid;
 mod line;
 mod net;

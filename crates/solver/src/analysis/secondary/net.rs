@@ -5,6 +5,7 @@ use std::sync::Arc;
 use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
+use crate::analysis::secondary::cells::{Cell, Cells, Corner, Near};
 use crate::analysis::secondary::tape::PlaceTape;
 use crate::equations::runner::Runner;
 use crate::equations::solution::{ROUNDING, Range};
@@ -16,16 +17,6 @@ const TURN: f64 = 0.4;
 const PROBES: usize = 7;
 /// Most cells in one direction; more of a surface would turn farther in each.
 const MOST_CELLS: usize = 192;
-/// A quadratic function that vanishes in the middle of a cell with its slopes is nowhere in the cell more than this many times what it is
-/// at the corners and halfway between them.
-const BETWEEN: f64 = 1.25;
-/// Cells that are looked at together.
-const BLOCK: usize = 8;
-/// By so little, as a share of where it lies and how large it is, a ball is made larger than its numbers say, so that their rounding
-/// leaves no cell out.
-const ROUNDED: f64 = 1e-12;
-/// Parts that wait to be looked at, at the most: one for each time that as many cells as there are can be halved.
-const MOST_WAITING: usize = 32;
 /// The foot is found when the next step along the surface is shorter, mm: what it misses then is its square over the radius of
 /// curvature.
 const STILL: f64 = 1e-7;
@@ -48,64 +39,9 @@ pub(super) struct Piece {
     /// How fast it runs with either parameter where it does so most, mm.
     speeds: [f64; 2],
     steps: [f64; 2],
-    cells: Arc<[Cell]>,
-    /// The cells in an order in which neighbours are near each other.
-    order: Arc<[u32]>,
-    /// All of them, halved again and again; a part comes before its halves, the first of which follows it.
-    parts: Arc<[Part]>,
+    cells: Arc<Cells>,
     /// The least and the greatest coordinates of its cells.
     hull: [Vector3<f64>; 2],
-}
-
-/// A ball that holds some cells.
-#[derive(Clone, Copy, Debug)]
-struct Ball {
-    center: Vector3<f64>,
-    radius: f64,
-}
-
-/// Some cells, where they stand in the order.
-#[derive(Clone, Debug)]
-struct Part {
-    ball: Ball,
-    cells: [u32; 2],
-    /// Where its second half stands, if it has halves.
-    second: Option<u32>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    ball: Ball,
-    /// From its middle to the ends of either parameter.
-    halves: [Vector3<f64>; 2],
-    /// What tells the share of these halves in a vector.
-    duals: [Vector3<f64>; 2],
-    /// The sine of the angle between the halves. By so much at most a point is nearer to the parallelogram than to the place in it whose
-    /// shares are the point's own, cut off at its sides.
-    skew: f64,
-    /// How far the surface may be from the parallelogram of the halves.
-    sagitta: f64,
-    at: [f64; 2],
-}
-
-/// Position and tangents at a corner of a cell.
-#[derive(Clone, Copy)]
-struct Corner([Vector3<f64>; 3]);
-
-impl Corner {
-    /// The place halfway to the next corner along a parameter, of the cubic through both with their tangents.
-    fn halfway(&self, other: &Corner, along: usize, steps: [f64; 2]) -> Vector3<f64> {
-        0.5 * (self.0[0] + other.0[0]) + (self.0[1 + along] - other.0[1 + along]) * (0.125 * steps[along])
-    }
-}
-
-/// The least distance that a point may have from a piece, mm, and the parameters near which.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Near {
-    pub(super) least: f64,
-    pub(super) at: [f64; 2],
-    /// The number of the cell.
-    cell: usize,
 }
 
 /// The foot of a point on a piece, or on what lies a little beyond its ranges.
@@ -164,21 +100,14 @@ impl Piece {
             speeds: [0.0; 2],
             steps: [0.0; 2],
             cells: Arc::default(),
-            order: Arc::default(),
-            parts: Arc::default(),
             hull: [Vector3::zeros(); 2],
         };
         let (cells, steps) = piece.seen().cells();
-        let (mut order, mut parts): (Vec<u32>, Vec<Part>) = ((0..cells.len() as u32).collect(), Vec::new());
-        divide(&cells, (&mut order, 0), &mut parts);
-        let reach = |cell: &Cell| cell.halves[0].abs() + cell.halves[1].abs() + Vector3::repeat(cell.sagitta);
-        let low = cells.iter().map(|cell| cell.ball.center - reach(cell)).reduce(|a, b| a.inf(&b));
-        let high = cells.iter().map(|cell| cell.ball.center + reach(cell)).reduce(|a, b| a.sup(&b));
-        piece.hull = [low, high].map(Option::unwrap_or_default);
+        let hull = cells.iter().map(Cell::hull).reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])]);
+        piece.hull = hull.unwrap_or_default();
         let speed = |k: usize| cells.iter().map(|cell| 2.0 * cell.halves[k].norm() / steps[k]).fold(0.0, f64::max);
         piece.speeds = [0, 1].map(speed);
-        (piece.cells, piece.steps) = (cells.into(), steps);
-        (piece.order, piece.parts) = (order.into(), parts.into());
+        (piece.cells, piece.steps) = (Arc::new(Cells::new(&cells)), steps);
         piece
     }
 
@@ -188,8 +117,7 @@ impl Piece {
         if self.tape.uses_settings() {
             Piece::of_tape(self.number, tape, self.ranges)
         } else {
-            let (cells, order, parts) = (self.cells.clone(), self.order.clone(), self.parts.clone());
-            Piece { tape, cells, order, parts, ..*self }
+            Piece { tape, cells: self.cells.clone(), ..*self }
         }
     }
 
@@ -207,42 +135,11 @@ impl Piece {
         (low - point).sup(&(point - high)).sup(&Vector3::zeros()).norm()
     }
 
-    /// The cell that a point is nearest to, of several the first; `None` if no cell is within a distance, mm. What another point that is not
-    /// far from it is near is looked at first.
-    pub(super) fn near(&self, point: &Vector3<f64>, within: f64, other: Option<&Near>) -> Option<Near> {
-        let mut best: Option<Near> = None;
-        let mut look_at = |number: usize, most: f64| {
-            let near = self.cells[number].near(point, self.steps, number);
-            let is_nearer = near.least < most || near.least == most && best.is_none_or(|best| number < best.cell);
-            best = if is_nearer { Some(near) } else { best };
-            if is_nearer { near.least } else { most }
-        };
-        let mut most = other.map_or(within, |other| look_at(other.cell, within));
-        let mut waiting = [(0, 0.0); MOST_WAITING];
-        let mut count = usize::from(!self.parts.is_empty());
-        while count > 0 {
-            count -= 1;
-            let (at, least) = waiting[count];
-            if least > most {
-                continue;
-            }
-            let Part { cells: [from, to], second, .. } = self.parts[at];
-            if let Some(second) = second {
-                let mut halves = [at + 1, second as usize].map(|half| (half, self.parts[half].ball.least(point)));
-                if halves[0].1 < halves[1].1 {
-                    halves.swap(0, 1);
-                }
-                waiting[count..count + 2].copy_from_slice(&halves);
-                count += 2;
-                continue;
-            }
-            for &number in &self.order[from as usize..to as usize] {
-                if self.cells[number as usize].ball.least(point) <= most {
-                    most = look_at(number as usize, most);
-                }
-            }
-        }
-        best
+    /// The cell that a point is nearest to, of several the first; `None` if no cell is within a distance, mm. Where other points were near
+    /// that are not far from it is looked at first.
+    #[inline(always)]
+    pub(super) fn near(&self, point: &Vector3<f64>, within: f64, others: [Option<&Near>; 2]) -> Option<Near> {
+        self.cells.nearest([point.x, point.y, point.z], within, others, self.steps)
     }
 
     /// Whether two places on the piece are no farther apart than neighbouring cells.
@@ -281,56 +178,6 @@ impl Piece {
             i8::from(at[k] > range.high + margin) - i8::from(at[k] < range.low - margin)
         })
     }
-}
-
-impl Cell {
-    /// As far as it is itself near a point.
-    fn near(&self, point: &Vector3<f64>, steps: [f64; 2], number: usize) -> Near {
-        let from = point - self.ball.center;
-        let share = self.duals.map(|dual| dual.dot(&from).clamp(-1.0, 1.0));
-        let apart = (from - self.halves[0] * share[0] - self.halves[1] * share[1]).norm();
-        let at = [0, 1].map(|k| self.at[k] + 0.5 * share[k] * steps[k]);
-        Near { least: self.skew * apart - self.sagitta, at, cell: number }
-    }
-}
-
-impl Ball {
-    fn around<'c>(cells: impl ExactSizeIterator<Item = &'c Cell> + Clone) -> Ball {
-        let count = cells.len() as f64;
-        let center = cells.clone().map(|cell| cell.ball.center).sum::<Vector3<f64>>() / count;
-        let reach = |cell: &Cell| (cell.ball.center - center).norm() + cell.ball.radius;
-        let radius = cells.map(reach).fold(0.0, f64::max);
-        Ball { center, radius: radius + ROUNDED * (radius + center.norm()) }
-    }
-
-    /// How near a point is to it at the least, negative within it.
-    fn least(&self, point: &Vector3<f64>) -> f64 {
-        (point - self.center).norm() - self.radius
-    }
-}
-
-/// Halves some cells, which stand in the order from a place on, across the direction in which they reach farthest, until few are left in
-/// each part.
-fn divide(cells: &[Cell], (order, from): (&mut [u32], u32), parts: &mut Vec<Part>) {
-    if order.is_empty() {
-        return;
-    }
-    let own = order.iter().map(|number| &cells[*number as usize]);
-    let (at, count) = (parts.len(), order.len());
-    parts.push(Part { ball: Ball::around(own.clone()), cells: [from, from + count as u32], second: None });
-    if count <= BLOCK {
-        return;
-    }
-    let centers = || own.clone().map(|cell| cell.ball.center);
-    let low = centers().reduce(|a, b| a.inf(&b)).unwrap_or_default();
-    let high = centers().reduce(|a, b| a.sup(&b)).unwrap_or_default();
-    let along = (high - low).imax();
-    let place = |number: u32| cells[number as usize].ball.center[along];
-    order.select_nth_unstable_by(count / 2, |a, b| place(*a).total_cmp(&place(*b)).then(a.cmp(b)));
-    let (first, second) = order.split_at_mut(count / 2);
-    divide(cells, (first, from), parts);
-    parts[at].second = Some(parts.len() as u32);
-    divide(cells, (second, from + count as u32 / 2), parts);
 }
 
 impl Seen<'_> {
@@ -391,26 +238,7 @@ impl Seen<'_> {
     /// A cell from its middle and its corners; nothing where the surface has no place or normal.
     fn cell(&mut self, at: [f64; 2], steps: [f64; 2], corners: [Corner; 4]) -> Option<Cell> {
         self.run(at);
-        let center = self.vector(0);
-        let halves = [0, 1].map(|k| self.vector(2 + k) * (0.5 * steps[k]));
-        let [a, b] = halves;
-        let (aa, ab, bb) = (a.norm_squared(), a.dot(&b), b.norm_squared());
-        let area = aa * bb - ab * ab;
-        let duals = [(a * bb - b * ab) / area, (b * aa - a * ab) / area];
-        let [low_low, low_high, high_low, high_high] = &corners;
-        let halfway = [
-            (low_low.halfway(low_high, 1, steps), -a),
-            (high_low.halfway(high_high, 1, steps), a),
-            (low_low.halfway(high_low, 0, steps), -b),
-            (low_high.halfway(high_high, 0, steps), b),
-        ];
-        let flat = [-a - b, b - a, a - b, a + b];
-        let around = corners.iter().map(|corner| corner.0[0]).zip(flat).chain(halfway);
-        let sagitta = BETWEEN * around.map(|(place, flat)| (place - center - flat).norm()).fold(0.0, f64::max);
-        let radius = corners.iter().map(|corner| (corner.0[0] - center).norm()).fold(0.0, f64::max) + sagitta;
-        let skew = (area / (aa * bb)).sqrt();
-        let is_whole = duals.iter().all(|dual| dual.iter().all(|x| x.is_finite())) && radius.is_finite();
-        is_whole.then_some(Cell { ball: Ball { center, radius }, halves, duals, skew, sagitta, at })
+        Cell::new(at, Corner([0, 2, 3].map(|k| self.vector(k))), corners, steps)
     }
 
     /// The foot of a point that Newton finds from a place.
@@ -587,7 +415,7 @@ mod tests {
         for (k, on) in places.iter().enumerate() {
             let point = on + Vector3::new(-7.0, 4.0, 1.5) * (k % 3) as f64;
             let distance = places.iter().map(|place| (place - point).norm()).fold(f64::INFINITY, f64::min);
-            let least = piece.near(&point, f64::INFINITY, None).expect("cells").least;
+            let least = piece.near(&point, f64::INFINITY, [None; 2]).expect("cells").least;
             assert!(least <= distance, "{point}: {least} mm, but {distance} mm");
         }
     }
