@@ -305,7 +305,7 @@ impl Block {
     }
 
     #[inline(always)]
-    fn from_center(&self, lane: usize, point: [f64; 3]) -> [f64; 3] {
+    fn off_center(&self, lane: usize, point: [f64; 3]) -> [f64; 3] {
         [0, 1, 2].map(|k| point[k] - self.balls.center[k][lane])
     }
 
@@ -315,7 +315,7 @@ impl Block {
     fn least(&self, point: [f64; 3]) -> ([f64; BLOCK], [f64; BLOCK]) {
         let (mut flat, mut least) = ([f64::INFINITY; BLOCK], [f64::INFINITY; BLOCK]);
         for lane in 0..BLOCK {
-            let from = self.from_center(lane, point);
+            let from = self.off_center(lane, point);
             let shares = self.shares(lane, from);
             let apart =
                 [0, 1, 2].map(|k| from[k] - self.halves[0][k][lane] * shares[0] - self.halves[1][k][lane] * shares[1]);
@@ -331,7 +331,7 @@ impl Block {
     }
 
     fn near(&self, block: usize, lane: usize, point: [f64; 3], steps: [f64; 2], least: f64) -> Near {
-        let shares = self.shares(lane, self.from_center(lane, point));
+        let shares = self.shares(lane, self.off_center(lane, point));
         let [a, b] = &self.halves;
         let on = |k: usize| self.balls.center[k][lane] + a[k][lane] * shares[0] + b[k][lane] * shares[1];
         let at = [0, 1].map(|k| self.at[k][lane] + 0.5 * shares[k] * steps[k]);
