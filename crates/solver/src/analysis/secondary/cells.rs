@@ -11,7 +11,7 @@ const BLOCK: usize = 8;
 /// leaves no cell out.
 const ROUNDED: f64 = 1e-12;
 /// Levels of balls at the most: so many hold more cells than a piece has.
-const MOST_LEVELS: usize = 6;
+const MOST_LEVELS: usize = 5;
 
 /// A place in the middle of a cell or at a corner, and the tangents there.
 #[derive(Clone, Copy)]
@@ -182,33 +182,38 @@ impl Cells {
         steps: [f64; 2],
     ) -> Option<Near> {
         let mut best = Best { least: f64::INFINITY, flat: f64::INFINITY, at: None };
-        for other in others.into_iter().flatten() {
-            best.look_at(&self.blocks, other.block, point);
+        let [first, second] = others.map(|other| other.map(|near| near.block));
+        let second = second.filter(|block| Some(*block) != first);
+        for block in [first, second].into_iter().flatten() {
+            best.look_at(&self.blocks, block, point);
         }
         // how many levels are below, and where
-        let mut waiting = [(0, 0, f64::NEG_INFINITY); BLOCK * MOST_LEVELS];
-        waiting[0].0 = self.levels.len();
+        let mut waiting = [(0u32, 0u32, f64::NEG_INFINITY); BLOCK * MOST_LEVELS];
+        waiting[0].0 = self.levels.len() as u32;
         let mut count = usize::from(!self.levels.is_empty());
         while count > 0 {
             count -= 1;
             let (below, at, least) = waiting[count];
+            let at = at as usize;
             // what a ball holds is nowhere nearer, parallelograms included
             if least > best.flat {
                 continue;
             }
             if below == 0 {
-                best.look_at(&self.blocks, at, point);
+                if first != Some(at) && second != Some(at) {
+                    best.look_at(&self.blocks, at, point);
+                }
                 continue;
             }
-            let least = self.levels[below - 1][at].least(point);
+            let least = self.levels[below as usize - 1][at].least(point);
             // the parallelogram of what is within the distance may be farther away
             let most = best.flat.min(within + self.sagitta);
-            let first = count;
+            let nearest = count;
             for (lane, least) in least.into_iter().enumerate() {
                 if least <= most && least < f64::INFINITY {
-                    waiting[count] = (below - 1, BLOCK * at + lane, least);
+                    waiting[count] = (below - 1, (BLOCK * at + lane) as u32, least);
                     // the nearest one comes next
-                    if count > first && waiting[count - 1].2 < least {
+                    if count > nearest && waiting[count - 1].2 < least {
                         waiting.swap(count - 1, count);
                     }
                     count += 1;
@@ -258,14 +263,16 @@ impl Best {
     fn look_at(&mut self, blocks: &[Block], block: usize, point: [f64; 3]) {
         let cells = &blocks[block];
         let (flat, least) = cells.least(point);
-        self.least = least.into_iter().fold(self.least, |a, b| if b < a { b } else { a });
-        if flat.iter().all(|flat| *flat > self.flat) {
+        let lowest = |values: [f64; BLOCK], most: f64| values.into_iter().fold(most, |a, b| if b < a { b } else { a });
+        self.least = lowest(least, self.least);
+        let nearest = lowest(flat, f64::INFINITY);
+        if nearest > self.flat || nearest == f64::INFINITY {
             return;
         }
-        for (lane, flat) in flat.into_iter().enumerate() {
+        for (lane, _) in flat.iter().enumerate().filter(|(_, flat)| **flat == nearest) {
             let is_first = || self.at.is_none_or(|(block, best)| cells.numbers[lane] < blocks[block].numbers[best]);
-            if flat < self.flat || flat == self.flat && flat < f64::INFINITY && is_first() {
-                (self.flat, self.at) = (flat, Some((block, lane)));
+            if nearest < self.flat || is_first() {
+                (self.flat, self.at) = (nearest, Some((block, lane)));
             }
         }
     }
