@@ -147,10 +147,16 @@ impl Balls {
     fn least(&self, point: [f64; 3]) -> [f64; BLOCK] {
         let mut least = [0.0; BLOCK];
         for (lane, least) in least.iter_mut().enumerate() {
-            let from = [0, 1, 2].map(|k| point[k] - self.center[k][lane]);
+            let from = self.less_center(lane, point);
             *least = dot(from, from).sqrt() - self.radius[lane];
         }
         least
+    }
+
+    /// What leads to a point from the center of one.
+    #[inline(always)]
+    fn less_center(&self, lane: usize, point: [f64; 3]) -> [f64; 3] {
+        less(point, of(&self.center, lane), 1.0)
     }
 }
 
@@ -263,9 +269,8 @@ impl Best {
     fn look_at(&mut self, blocks: &[Block], block: usize, point: [f64; 3]) {
         let cells = &blocks[block];
         let (flat, least) = cells.least(point);
-        let lowest = |values: [f64; BLOCK], most: f64| values.into_iter().fold(most, |a, b| if b < a { b } else { a });
-        self.least = lowest(least, self.least);
-        let nearest = lowest(flat, f64::INFINITY);
+        self.least = lowest(least).min(self.least);
+        let nearest = lowest(flat);
         if nearest > self.flat || nearest == f64::INFINITY {
             return;
         }
@@ -278,42 +283,59 @@ impl Best {
     }
 }
 
+// written out: `map` of an array may stay a call within loops that are to become vectors
+#[inline(always)]
+fn of(vectors: &[[f64; BLOCK]; 3], lane: usize) -> [f64; 3] {
+    [vectors[0][lane], vectors[1][lane], vectors[2][lane]]
+}
+
+/// `a - share b`
+#[inline(always)]
+fn less(a: [f64; 3], b: [f64; 3], share: f64) -> [f64; 3] {
+    [a[0] - b[0] * share, a[1] - b[1] * share, a[2] - b[2] * share]
+}
+
 #[inline(always)]
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+/// In pairs, which vectors take at once.
+#[inline(always)]
+fn lowest(mut values: [f64; BLOCK]) -> f64 {
+    for half in [BLOCK / 2, BLOCK / 4, BLOCK / 8] {
+        for k in 0..half {
+            let other = values[k + half];
+            values[k] = if other < values[k] { other } else { values[k] };
+        }
+    }
+    values[0]
+}
+
 impl Block {
     fn new(cells: &[Cell], numbers: &[usize]) -> Block {
         let cell = |lane: usize| numbers.get(lane).map(|number| &cells[*number]);
-        let of = |value: &dyn Fn(&Cell) -> f64, without: f64| {
+        let each = |value: &dyn Fn(&Cell) -> f64, without: f64| {
             std::array::from_fn::<f64, BLOCK, _>(|lane| cell(lane).map_or(without, value))
         };
-        let vectors = |value: &dyn Fn(&Cell) -> Vector3<f64>| [0, 1, 2].map(|k| of(&|cell| value(cell)[k], 0.0));
+        let vectors = |value: &dyn Fn(&Cell) -> Vector3<f64>| [0, 1, 2].map(|k| each(&|cell| value(cell)[k], 0.0));
         Block {
             numbers: std::array::from_fn(|lane| numbers.get(lane).copied().unwrap_or(usize::MAX)),
             balls: Balls::new(numbers.iter().map(|number| cells[*number].ball)),
             halves: [0, 1].map(|k| vectors(&|cell| cell.halves[k])),
             duals: [0, 1].map(|k| vectors(&|cell| cell.duals[k])),
             normal: vectors(&|cell| cell.normal),
-            skew: of(&|cell| cell.skew, 1.0),
-            sagitta: of(&|cell| cell.sagitta, f64::NEG_INFINITY),
-            at: [0, 1].map(|k| of(&|cell| cell.at[k], 0.0)),
+            skew: each(&|cell| cell.skew, 1.0),
+            sagitta: each(&|cell| cell.sagitta, f64::NEG_INFINITY),
+            at: [0, 1].map(|k| each(&|cell| cell.at[k], 0.0)),
         }
     }
 
     /// The shares of a cell's halves in the way from its middle to a point, cut off at its sides.
     #[inline(always)]
     fn shares(&self, lane: usize, from: [f64; 3]) -> [f64; 2] {
-        [0, 1].map(|k| {
-            let dual = &self.duals[k];
-            dot([dual[0][lane], dual[1][lane], dual[2][lane]], from).clamp(-1.0, 1.0)
-        })
-    }
-
-    #[inline(always)]
-    fn off_center(&self, lane: usize, point: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k| point[k] - self.balls.center[k][lane])
+        let [a, b] = &self.duals;
+        [dot(of(a, lane), from).clamp(-1.0, 1.0), dot(of(b, lane), from).clamp(-1.0, 1.0)]
     }
 
     /// How near a point is to the place in each cell's parallelogram that has its shares, cut off at the sides, and how near it may be to the
@@ -322,11 +344,11 @@ impl Block {
     fn least(&self, point: [f64; 3]) -> ([f64; BLOCK], [f64; BLOCK]) {
         let (mut flat, mut least) = ([f64::INFINITY; BLOCK], [f64::INFINITY; BLOCK]);
         for lane in 0..BLOCK {
-            let from = self.off_center(lane, point);
-            let shares = self.shares(lane, from);
-            let apart =
-                [0, 1, 2].map(|k| from[k] - self.halves[0][k][lane] * shares[0] - self.halves[1][k][lane] * shares[1]);
-            let across = dot([0, 1, 2].map(|k| self.normal[k][lane]), from);
+            let from = self.balls.less_center(lane, point);
+            let [share_a, share_b] = self.shares(lane, from);
+            let (a, b) = (of(&self.halves[0], lane), of(&self.halves[1], lane));
+            let apart = less(less(from, a, share_a), b, share_b);
+            let across = dot(of(&self.normal, lane), from);
             let skew = self.skew[lane];
             let from_flat = (skew * dot(apart, apart) + (1.0 - skew) * (across * across)).sqrt();
             let within_ball = dot(from, from).sqrt() - self.balls.radius[lane];
@@ -338,7 +360,7 @@ impl Block {
     }
 
     fn near(&self, block: usize, lane: usize, point: [f64; 3], steps: [f64; 2], least: f64) -> Near {
-        let shares = self.shares(lane, self.off_center(lane, point));
+        let shares = self.shares(lane, self.balls.less_center(lane, point));
         let [a, b] = &self.halves;
         let on = |k: usize| self.balls.center[k][lane] + a[k][lane] * shares[0] + b[k][lane] * shares[1];
         let at = [0, 1].map(|k| self.at[k][lane] + 0.5 * shares[k] * steps[k]);
