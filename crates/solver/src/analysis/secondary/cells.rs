@@ -187,11 +187,13 @@ impl Cells {
         others: [Option<&Near>; 2],
         steps: [f64; 2],
     ) -> Option<Near> {
+        // the parallelogram of what is within the distance may be farther away; what is beyond that counts for nothing, looked at or not
+        let reach = (within + self.sagitta).min(f64::MAX);
         let mut best = Best { least: f64::INFINITY, flat: f64::INFINITY, at: None };
         let [first, second] = others.map(|other| other.map(|near| near.block));
         let second = second.filter(|block| Some(*block) != first);
         for block in [first, second].into_iter().flatten() {
-            best.look_at(&self.blocks, block, point);
+            best.look_at(&self.blocks, block, point, reach);
         }
         // how many levels are below, and where
         let mut waiting = [(0u32, 0u32, f64::NEG_INFINITY); BLOCK * MOST_LEVELS];
@@ -207,16 +209,15 @@ impl Cells {
             }
             if below == 0 {
                 if first != Some(at) && second != Some(at) {
-                    best.look_at(&self.blocks, at, point);
+                    best.look_at(&self.blocks, at, point, reach);
                 }
                 continue;
             }
             let least = self.levels[below as usize - 1][at].least(point);
-            // the parallelogram of what is within the distance may be farther away
-            let most = best.flat.min(within + self.sagitta);
+            let most = best.flat.min(reach);
             let nearest = count;
             for (lane, least) in least.into_iter().enumerate() {
-                if least <= most && least < f64::INFINITY {
+                if least <= most {
                     waiting[count] = (below - 1, (BLOCK * at + lane) as u32, least);
                     // the nearest one comes next
                     if count > nearest && waiting[count - 1].2 < least {
@@ -266,9 +267,9 @@ struct Best {
 
 impl Best {
     #[inline(always)]
-    fn look_at(&mut self, blocks: &[Block], block: usize, point: [f64; 3]) {
+    fn look_at(&mut self, blocks: &[Block], block: usize, point: [f64; 3], reach: f64) {
         let cells = &blocks[block];
-        let (flat, least) = cells.least(point);
+        let (flat, least) = cells.least(point, reach);
         self.least = lowest(least).min(self.least);
         let nearest = lowest(flat);
         if nearest > self.flat || nearest == f64::INFINITY {
@@ -339,9 +340,9 @@ impl Block {
     }
 
     /// How near a point is to the place in each cell's parallelogram that has its shares, cut off at the sides, and how near it may be to the
-    /// surface, which lies about the parallelogram and in the cell's ball.
+    /// surface, which lies about the parallelogram and in the cell's ball; of cells whose balls are beyond a reach the first is left out.
     #[inline(always)]
-    fn least(&self, point: [f64; 3]) -> ([f64; BLOCK], [f64; BLOCK]) {
+    fn least(&self, point: [f64; 3], reach: f64) -> ([f64; BLOCK], [f64; BLOCK]) {
         let (mut flat, mut least) = ([f64::INFINITY; BLOCK], [f64::INFINITY; BLOCK]);
         for lane in 0..BLOCK {
             let from = self.balls.less_center(lane, point);
@@ -353,7 +354,7 @@ impl Block {
             let from_flat = (skew * dot(apart, apart) + (1.0 - skew) * (across * across)).sqrt();
             let within_ball = dot(from, from).sqrt() - self.balls.radius[lane];
             let about_flat = from_flat - self.sagitta[lane];
-            flat[lane] = if within_ball < f64::INFINITY { dot(apart, apart).sqrt() } else { f64::INFINITY };
+            flat[lane] = if within_ball <= reach { dot(apart, apart).sqrt() } else { f64::INFINITY };
             least[lane] = if about_flat > within_ball { about_flat } else { within_ball };
         }
         (flat, least)
@@ -406,5 +407,39 @@ mod tests {
             assert!(all.nearest(point, 0.99 * least.abs() - 1e-9, [None; 2], steps).is_none() || least < 0.0);
             before = Some(near);
         }
+    }
+
+    /// The crest of a hob: its parameters run nearly along one direction, so that shares cut off at the sides lead far from the nearest place.
+    /// What other points were near changes nothing, however small the distance that matters.
+    #[test]
+    fn what_is_looked_at_first_changes_nothing() {
+        let steps = [0.1, 0.1];
+        let place = |[u, v]: [f64; 2]| {
+            let (sin, cos) = (v + 0.6 * u).sin_cos();
+            let around = Vector3::new(-50.0 * sin, 50.0 * cos, 0.0);
+            Corner([Vector3::new(50.0 * cos, 50.0 * sin, 2.0 * v), 0.6 * around, around + Vector3::new(0.0, 0.0, 2.0)])
+        };
+        let cells: Vec<Cell> = (0..3000)
+            .filter_map(|k| {
+                let at = [(k % 10) as f64 * steps[0], (k / 10) as f64 * steps[1]];
+                let corner = |(a, b): (f64, f64)| place([at[0] + 0.5 * a * steps[0], at[1] + 0.5 * b * steps[1]]);
+                Cell::new(at, place(at), [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)].map(corner), steps)
+            })
+            .collect();
+        assert_eq!(cells.len(), 3000);
+        let all = Cells::new(&cells);
+        let mut found = 0;
+        for k in 0..20_000 {
+            let k = f64::from(k);
+            let radius = 50.0 + 3.0 * (0.37 * k).sin();
+            let point = [radius * (2.1 * k).cos(), radius * (2.1 * k).sin(), 30.0 + 25.0 * (0.013 * k).sin()];
+            let within = 1.5 * (1.0 + (0.71 * k).sin());
+            let near = |others: [Option<&Near>; 2], within| all.nearest(point, within, others, steps);
+            let (alone, wherever) = (near([None; 2], within), near([None; 2], f64::INFINITY));
+            let beside = near([None, wherever.as_ref()], within);
+            assert_eq!(alone.map(|near| (near.least, near.at)), beside.map(|near| (near.least, near.at)), "{k}");
+            found += usize::from(alone.is_some());
+        }
+        assert!((1000..19_000).contains(&found), "{found}");
     }
 }
