@@ -91,6 +91,65 @@ fn meshing_is_the_determinant() {
     }
 }
 
+/// A tube about a helix: its point and its normal turn with the helix, and its normal is known in closed form.
+fn tube<'g>(setting: &Setting<'g>) -> (Surface<'g>, Vector3<'g>) {
+    let &Setting { graph, u, v, .. } = setting;
+    let [radius, lead, thickness] = [2.0, 0.6, 0.3].map(|number| graph.constant(number));
+    // across the helix, as a share of the way along its tangent
+    let aside = u.sin() / (radius.squared() + lead.squared()).sqrt();
+    let normal = Vector3([
+        u.cos() * v.cos() - aside * lead * v.sin(),
+        u.cos() * v.sin() + aside * lead * v.cos(),
+        -(aside * radius),
+    ]);
+    let helix = Vector3([radius * v.cos(), radius * v.sin(), lead * v]);
+    (Surface::parametric([u, v], helix + normal.scaled(thickness), false), normal)
+}
+
+#[test]
+fn a_normal_turns_with_its_point() {
+    let graph = Graph::new();
+    let setting = Setting::new(&graph);
+    let (tube, closed_form) = tube(&setting);
+    let mut random = Random(25);
+    for _ in 0..50 {
+        let at = Setting::point(&mut random);
+        let [found, expected] = [tube.normal, closed_form].map(|normal| setting.vector_at(normal, &at));
+        let sign = found.dot(&expected).signum();
+        assert!((found * sign - expected).norm() < 1e-14, "{found} instead of {expected}");
+    }
+    // its length does not depend on the turn: the third component shows it alone
+    assert!(tube.normal.0[2].derivative(setting.v).is_zero());
+}
+
+/// Turned by the hob's thread and spindle together, the equation of meshing knows the two as one angle, as the position does.
+#[test]
+fn a_thread_that_turns_about_its_axis_meshes_by_one_angle() {
+    let graph = Graph::new();
+    let setting = Setting::new(&graph);
+    let &Setting { u, v, motion, .. } = &setting;
+    let (tube, _) = tube(&setting);
+    let constant = |x, y, z| Vector3::constant(&graph, [x, y, z]);
+    let t_work_hob = Chain::new(
+        &graph,
+        vec![
+            Step::Rotate(Axis::Z, -0.1 * motion),
+            Step::Translate(constant(40.0, 0.0, 0.0)),
+            Step::Rotate(Axis::X, graph.constant(1.4)),
+            Step::Rotate(Axis::Z, motion),
+        ],
+    );
+    let meshing = tube.meshing(&t_work_hob, motion);
+    let angles: Vec<String> = graph.angles_in(&[meshing]).iter().map(|angle| angle.to_string()).collect();
+    assert!(angles.iter().all(|angle| [u, v + motion].iter().any(|known| known.to_string() == *angle)), "{angles:?}");
+    let mut random = Random(26);
+    for _ in 0..50 {
+        let at = Setting::point(&mut random);
+        let (found, expected) = (setting.number(meshing, &at), determinant(&setting, &t_work_hob, &tube, &at));
+        assert!((found.abs() - expected.abs()).abs() < 1e-6 * (1.0 + expected.abs()), "{found} instead of {expected}");
+    }
+}
+
 #[test]
 fn envelope_collects_unknowns_and_constraints() {
     let graph = Graph::new();

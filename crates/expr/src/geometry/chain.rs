@@ -1,9 +1,9 @@
 //! Chains of elementary transforms between two frames.
 
 use crate::geometry::pose::{Pose, Twist};
+use crate::geometry::turned::{Turn, Turned};
 use crate::geometry::vector::{Matrix3, Vector3};
 use crate::symbolic::graph::{Expr, Graph};
-use crate::symbolic::terms::{Sum, product};
 
 /// The line that a rotation turns about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -320,28 +320,16 @@ impl<'g> Chain<'g> {
     /// not to directions.
     fn rotated(&self, axis: Axis<'g>, angle: Expr<'g>, vector: Vector3<'g>) -> Vector3<'g> {
         let goes_on = || {
-            let (i, j) = match axis {
-                Axis::X => (1, 2),
-                Axis::Y => (2, 0),
-                Axis::Z => (0, 1),
+            let axis = match axis {
+                Axis::X => 0,
+                Axis::Y => 1,
+                Axis::Z => 2,
                 Axis::Along(_) => return None,
             };
-            let ((u, divisor), (v, same)) = (vector.0[i].as_quotient(), vector.0[j].as_quotient());
-            if divisor != same {
-                return None;
-            }
-            let (before, parts) = Sum::turned(u, v)?;
-            if self.steps.iter().any(|step| matches!(step, Step::Rotate(_, turn) if *turn == before)) {
-                return None;
-            }
-            let factor = Sum::common_factor(&parts);
-            let [a, b] = parts.map(|part| part.without(&factor).expression());
-            let factor = product(self.graph, &factor) / divisor;
-            let (c, s) = ((before + angle).cos(), (before + angle).sin());
-            let mut turned = vector;
-            turned.0[i] = factor * (a * c - b * s);
-            turned.0[j] = factor * (a * s + b * c);
-            Some(turned)
+            let Turned { before, turn } = Turned::about(axis, vector)?;
+            let is_of_chain = |step: &Step<'g>| matches!(step, Step::Rotate(_, own) if *own == turn.angle);
+            let is_own = !self.steps.iter().any(is_of_chain);
+            is_own.then(|| Turn { angle: turn.angle + angle, ..turn }.of(before))
         };
         let is_number = angle.as_constant().is_some();
         let apart = || rotation(self.graph, axis, angle).times(vector);

@@ -7,6 +7,7 @@ mod edge;
 mod minors;
 mod pose;
 mod surface;
+mod turned;
 mod vector;
 
 pub use chain::{Axis, Chain, Step};

@@ -1,8 +1,14 @@
 //! Surfaces under constraint: the one idea that carries everything.
 
 use crate::geometry::chain::Chain;
+use crate::geometry::pose::Twist;
+use crate::geometry::turned::{Turn, Turned};
 use crate::geometry::vector::Vector3;
 use crate::symbolic::graph::Expr;
+
+/// A frame that is turned with the point is taken where that saves one in so many operations: settings that have no value yet, most of
+/// them zero, make what saves less uncertain.
+const WORTH_A_TURN: usize = 40;
 
 /// A surface as four symbolic things: unknowns, position, normal, constraints.
 ///
@@ -63,7 +69,12 @@ impl<'g> Surface<'g> {
     ///
     /// On a cone that is its radius: so the normal does not vanish at the tip.
     pub fn raw_normal([u, v]: [Expr<'g>; 2], position: Vector3<'g>) -> Vector3<'g> {
-        position.derivative(u).cross(position.derivative(v)).primitive()
+        match Turned::of(position) {
+            Some(Turned { before, turn }) => {
+                turn.of(turn.derivative(before, u).cross(turn.derivative(before, v)).primitive())
+            }
+            None => position.derivative(u).cross(position.derivative(v)).primitive(),
+        }
     }
 
     /// The same surface seen from the frame at the other end of a chain that does not depend on its unknowns.
@@ -109,14 +120,15 @@ impl<'g> Surface<'g> {
     /// The equation of meshing of one motion, mm per unit of the motion: `n · (ω × r + v)`. It equals
     /// `det(r_u, r_v, r_motion) / |r_u × r_v|` in the work's frame, and is the same in every frame of the chain: it is written
     /// in the one in which, beside the position in the work, it takes the fewest operations. Between the two bodies that a
-    /// cradle and a work spindle turn, their twists are almost constant.
+    /// cradle and a work spindle turn, their twists are almost constant; a frame that turns with the point of a helicoid, or of a surface
+    /// of revolution, sees neither position nor normal turn.
     pub fn meshing(&self, t_work_tool: &Chain<'g>, motion: Expr<'g>) -> Expr<'g> {
         let in_frame = |k: usize| {
             let (t_work_frame, t_frame_tool) = t_work_tool.split(k);
             let seen = self.moved(&t_frame_tool);
             // what moves on the tool's side of the frame counts as the frame moving the other way
             let twist = t_work_frame.twist(motion).minus(t_frame_tool.inverse().twist(motion));
-            seen.normal.dot(twist.velocity(seen.position))
+            (seen, twist)
         };
         let position = t_work_tool.point(self.position).0;
         let unknowns: Vec<Expr<'g>> = self.unknowns.iter().copied().chain([motion]).collect();
@@ -126,10 +138,26 @@ impl<'g> Surface<'g> {
             let all: Vec<Expr<'g>> = values.iter().copied().chain(slopes).collect();
             meshing.graph().work(&all, &unknowns)
         };
-        match t_work_tool.frames_beside(motion)[..] {
-            [] => position[0].graph().constant(0.0),
-            [only] => in_frame(only),
-            ref several => several.iter().map(|&k| in_frame(k)).min_by_key(work).expect("several"),
+        let seen: Vec<(Surface<'g>, Twist<'g>)> = t_work_tool.frames_beside(motion).into_iter().map(in_frame).collect();
+        let as_they_are = seen.iter().map(|(seen, twist)| seen.normal.dot(twist.velocity(seen.position)));
+        let before_turns =
+            seen.iter().flat_map(|(seen, twist)| (0..3).filter_map(|axis| seen.before_turn(axis, twist)));
+        let with_work = |form: Expr<'g>| (work(&form), form);
+        let plain = as_they_are.map(with_work).min_by_key(|(work, _)| *work);
+        let turned = before_turns.map(with_work).min_by_key(|(work, _)| *work);
+        match (plain, turned) {
+            (Some((plain, _)), Some((turned, form))) if turned + plain / WORTH_A_TURN < plain => form,
+            (Some((_, form)), _) => form,
+            (None, _) => position[0].graph().constant(0.0),
         }
+    }
+
+    /// What a twist does to the point along the normal, from a frame that is turned about an axis as both are; `None` if they are not.
+    fn before_turn(&self, axis: usize, twist: &Twist<'g>) -> Option<Expr<'g>> {
+        let [position, normal] = [self.position, self.normal].map(|vector| Turned::about(axis, vector));
+        let (position, normal) = (position?, normal?);
+        let turn: Turn<'g> = position.turn;
+        let twist = Twist { angular: turn.back(twist.angular), linear: turn.back(twist.linear) };
+        (normal.turn == turn).then(|| normal.before.dot(twist.velocity(position.before)))
     }
 }

@@ -2,6 +2,7 @@
 
 use std::ops::{Add, Neg, Sub};
 
+use crate::geometry::turned::Turned;
 use crate::symbolic::graph::{Expr, Graph};
 use crate::symbolic::terms::{Products, Sum};
 
@@ -47,8 +48,15 @@ impl<'g> Vector3<'g> {
         self.map(|component| factor * component)
     }
 
-    /// Divided by its length.
+    /// Divided by its length, which a turn of the vector does not change.
     pub fn normalized(self) -> Vector3<'g> {
+        match Turned::of(self) {
+            Some(Turned { before, turn }) => turn.of(before.over_its_length()),
+            None => self.over_its_length(),
+        }
+    }
+
+    fn over_its_length(self) -> Vector3<'g> {
         let mut square = self.dot(self);
         for products in [Products::Kept, Products::WrittenOut] {
             match Sum::of_squares(&self.0, products) {
@@ -70,7 +78,8 @@ impl<'g> Vector3<'g> {
             let Some(sums) = sums else { continue };
             let factor = Sum::common_factor(&sums);
             let parts: Vec<Expr<'g>> = sums.into_iter().map(|sum| sum.without(&factor).expression()).collect();
-            best = Vector3(cheaper(best.0, [parts[0], parts[1], parts[2]]));
+            // the shorter one, and of two as short the one without the factor: a radius by itself is as short as 1
+            best = Vector3(cheaper([parts[0], parts[1], parts[2]], best.0));
         }
         best
     }

@@ -104,7 +104,15 @@ impl<'g> Sum<'g> {
                 let factors = (below(a)?, below(b)?);
                 let factor = |id: NodeId, written: &Written| {
                     let stays = products == Products::Kept && written.terms.len() > 1;
-                    if stays { Rc::new(whole(id)) } else { Rc::clone(&written.terms) }
+                    // the same factor with either sign: −a − b is a + b, negative
+                    match stays.then(|| written.terms.iter().all(|(_, coefficient)| coefficient.value < 0.0)) {
+                        Some(true) => {
+                            let positive = Sum { graph, terms: added(&[], -1.0, &written.terms) }.expression();
+                            Rc::new(added(&[], -1.0, &whole(positive.id)))
+                        }
+                        Some(false) => Rc::new(whole(id)),
+                        None => Rc::clone(&written.terms),
+                    }
                 };
                 let product = multiplied(&factor(a, &factors.0), &factor(b, &factors.1))?;
                 (product, 1 + factors.0.depth.max(factors.1.depth))
@@ -168,13 +176,13 @@ impl<'g> Sum<'g> {
         Monomial(common.into())
     }
 
-    /// (a, b) turned by an angle: u = a·cos g − b·sin g and v = a·sin g + b·cos g. The angle, a and b, if u and v, written out,
-    /// are that.
-    pub(crate) fn turned(u: Expr<'g>, v: Expr<'g>) -> Option<(Expr<'g>, [Sum<'g>; 2])> {
+    /// (a, b) turned by an angle: u = a·cos g − b·sin g and v = a·sin g + b·cos g. The angle, a and b, if u and v, as sums of these
+    /// products, are that.
+    pub(crate) fn turned(u: Expr<'g>, v: Expr<'g>, products: Products) -> Option<(Expr<'g>, [Sum<'g>; 2])> {
         let graph = u.graph;
-        let u = Sum::of(u, Products::WrittenOut)?;
+        let u = Sum::of(u, products)?;
         // seldom needed
-        let v = LazyCell::new(|| Sum::of(v, Products::WrittenOut));
+        let v = LazyCell::new(|| Sum::of(v, products));
         let (first, _) = u.terms.first()?;
         first.0.iter().find_map(|&(factor, _)| {
             let (Node::Unary(Unary::Sin, angle) | Node::Unary(Unary::Cos, angle)) = graph.node(factor) else {
