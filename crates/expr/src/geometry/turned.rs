@@ -48,12 +48,10 @@ impl<'g> Turn<'g> {
     /// A vector turned.
     pub(crate) fn of(self, vector: Vector3<'g>) -> Vector3<'g> {
         let [i, j] = across(self.axis);
-        let ((u, divisor), (v, same)) = (vector.0[i].as_quotient(), vector.0[j].as_quotient());
-        let (u, v, divisor) = if divisor == same { (u, v, Some(divisor)) } else { (vector.0[i], vector.0[j], None) };
+        let (u, v) = (vector.0[i], vector.0[j]);
         let (c, s) = (self.angle.cos(), self.angle.sin());
-        let both = [u * c - v * s, u * s + v * c].map(|sum| divisor.map_or(sum, |divisor| sum / divisor));
         let mut turned = vector;
-        [turned.0[i], turned.0[j]] = both;
+        [turned.0[i], turned.0[j]] = [u * c - v * s, u * s + v * c];
         turned
     }
 

@@ -231,6 +231,11 @@ fn at_tip(
         (z - middle[0]).hypot(rho - middle[1])
     };
     let points = piece.solved_line(piece.section(), &targets, (unknown, far));
+    if points.solved() < shares.len()
+        && let Some(end) = end_at_tip(piece, (unknown, blank), shares)
+    {
+        return Ok(vec![end; shares.len()]);
+    }
     let tip = format!(
         "`{}` of the outline, where the first surface of a space begins and the last one ends,",
         blank.bounds()[1].name
@@ -244,6 +249,17 @@ fn at_tip(
         if is_beyond_tool { refusal::with_way(failure, between) } else { failure }
     })?;
     Ok((0..points.len()).map(|k| points.unknowns(k)[unknown]).collect())
+}
+
+/// The end of an unknown's range at which a surface lies on the tip all along. Where it only touches the tip there, as a rounded edge does
+/// that ends in its crest, rounding decides whether it has a point as high as the tip.
+fn end_at_tip(piece: &Piece<'_, '_>, (unknown, blank): (usize, &Blank), shares: &[f64]) -> Option<f64> {
+    let is_on_tip = |point: &[f64; 3]| blank.above_tip(piece.arrangement.section(*point)).abs() <= EXACT;
+    let range = piece.bound().ranges()[unknown];
+    [range.low, range.high].into_iter().filter(|end| end.is_finite()).find(|end| {
+        let points = piece.on_line((unknown, *end), blank, shares);
+        points.solved() == shares.len() && positions(&points).iter().all(is_on_tip)
+    })
 }
 
 /// # Errors
