@@ -433,7 +433,9 @@ job pinion {{
         )
     };
     let point = |along: u32| {
-        format!("[radius + 1 mm * cos(22 deg) + {along} mm * sin(22 deg), 1 mm * sin(22 deg) - 1 mm - {along} mm * cos(22 deg)]")
+        format!(
+            "[radius + 1 mm * cos(22 deg) + {along} mm * sin(22 deg), 1 mm * sin(22 deg) - 1 mm - {along} mm * cos(22 deg)]"
+        )
     };
     let [line, spline] = [
         format!("line(from: {}, to: {})", point(0), point(14)),

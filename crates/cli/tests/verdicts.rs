@@ -542,3 +542,34 @@ job rotor {
         }
     }
 }
+
+/// A ball on a plane way touches with its pole alone, where the angle about the pole is anything: roots that lead nowhere are no branches.
+#[test]
+fn roots_that_lead_nowhere_are_no_branches() {
+    const SPEC: &str = "machine table {
+    axis X : linear
+    axis Y : linear
+    frame work
+    frame head in work = translate(X, Y, 0 mm)
+}
+tool ball {
+    surface cap(a: angle in -180 deg .. 180 deg, b: angle in 0 deg .. 90 deg) {
+        at = [5 mm * cos(a) * sin(b), 5 mm * sin(a) * sin(b), -5 mm * cos(b)]
+        body towards [-cos(a) * sin(b), -sin(a) * sin(b), cos(b)]
+    }
+}
+job plane {
+    machine m = table
+    tool t = ball
+    mount t on m.head
+    motion across : length in -40 mm .. 40 mm
+    motion along : length in -40 mm .. 40 mm
+    drive m.X, m.Y = across, along
+    surface floor in m.work = envelope(t.cap, over: [across, along])
+    sample floor { x: -15 mm .. 15 mm by 5, y: 10 mm .. 25 mm by 5 }
+}
+";
+    let folder = folder("poles");
+    let (_, floor) = solved(&folder, SPEC, 0);
+    assert!(floor["outcomes"]["ambiguous"].is_null() && floor["solved"] == 0, "{}", floor["outcomes"]);
+}

@@ -165,8 +165,10 @@ fn with_others(
         }
     }
     let others = others.found;
-    if is_nowhere && !others.is_empty() {
-        return begun_at(grid, others, choice);
+    // a root that leads nowhere is one of many at a place where the equations fix no single point
+    let leads_on = |(_, field): &(Elsewhere, Field)| field.solved() > 1 || field.len() == 1;
+    if is_nowhere && others.iter().any(leads_on) {
+        return begun_at(grid, others.into_iter().filter(leads_on).collect(), choice);
     }
     if is_undecided && !others.is_empty() {
         grid.effort.places = vec![grid.effort.anchor];
