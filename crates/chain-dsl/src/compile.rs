@@ -178,7 +178,7 @@ pub fn compile_text<'g>(graph: &'g Graph, name: &str, text: &str, overrides: &[(
 }
 
 fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compilation<'g> {
-    let Loaded { from, mut sources, files, diagnostics, lacks_files, used, projects, beside } = loaded;
+    let Loaded { from, mut sources, files, diagnostics, lacks_files, used, projects, main, beside } = loaded;
     graph.set_room(Some(limits::GRAPH_OPERATIONS.most));
     let mut context = Context::new(graph, Tables::new(from, projects, &sources));
     context.lacks_files = lacks_files;
@@ -187,7 +187,6 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
     let overrides = read_overrides(&mut context, &mut sources, request.set);
     let items = Items::collect(&mut context, &files, beside.is_some());
     check_definitions(&mut context, &items);
-    let main = files.last().map(|(id, _)| *id);
     let jobs = build_jobs(&mut context, &items, (main, request, &overrides), &sources);
     let own_jobs = items.jobs.iter().filter(|item| Some(item.file) == main);
     let (mut expected_errors, mut untested_jobs) = (Vec::new(), Vec::new());
@@ -199,13 +198,14 @@ fn compile<'g>(graph: &'g Graph, loaded: Loaded, request: &Request<'_>) -> Compi
     if expected_errors.is_empty() {
         untested_jobs.clear();
     }
-    let machines = if request.whole { items.expected(&mut context, files.last(), &jobs) } else { Vec::new() };
+    let own = files.iter().find(|(id, _)| Some(*id) == main);
+    let machines = if request.whole { items.expected(&mut context, own, &jobs) } else { Vec::new() };
     let beside = files.iter().find(|(id, _)| Some(*id) == beside);
     let definitions = Definitions { machines: &items.machines, tools: &items.tools, overrides: &overrides.values };
     let machine = beside.and_then(|(id, file)| standing(&mut context, file, *id, &definitions, &sources));
     check_overrides(&mut context, &overrides, jobs.iter().chain(&machine));
     // a wrong text is not finished: what it does not use yet is no finding
-    if let Some((id, file)) = files.last().filter(|_| !context.has_errors()) {
+    if let Some((id, file)) = own.filter(|_| !context.has_errors()) {
         let all: Vec<&Item> = files.iter().flat_map(|(_, file)| &file.items).collect();
         unused::warn(&mut context, file, &all);
         if file.items.is_empty() {

@@ -455,3 +455,55 @@ fn room_over_fillet(turn: f64) -> Option<f64> {
     });
     crossings.reduce(f64::min)
 }
+
+/// A lantern pinion drives the wheel that its pins make: over the sampled part of the flank the pair turns evenly, and nothing touches before the
+/// contact. Beyond its first touch the pin comes to the flank's foot once more, at a position that stands alone.
+#[test]
+fn a_contact_that_stands_alone_hides_no_other() {
+    const SPEC: &str = "machine mesh {
+    axis lantern : rotary
+    axis wheel : rotary
+    frame house
+    frame lantern in house = translate_x(156 mm) rotate_z(lantern)
+    frame wheel in house = rotate_z(wheel)
+}
+machine bench {
+    frame table
+    frame place in table = translate_z(0 mm)
+}
+tool pin {
+    surface round(t: angle in -180 deg .. 180 deg, w: length in -6 mm .. 6 mm) {
+        at = [-30 mm + 4.4 mm * cos(t), 4.4 mm * sin(t), w]
+        body towards [-cos(t), -sin(t), 0]
+    }
+}
+job pair {
+    machine g = mesh
+    machine b = bench
+    machine m = mesh
+    tool p = pin
+    tool own = p
+    mount p on g.lantern
+    mount own on b.place
+    motion roll : angle in 0.1 deg .. 75 deg
+    drive g.lantern, g.wheel = roll, -roll * 10 / 42
+    surface flank in g.wheel = envelope(p.round, over: roll)
+    surface pin in b.table = move(own.round)
+    sample flank { roll: 9 deg .. 50 deg by 34, z: -5 mm .. 5 mm by 3, keep t: 0 deg .. 180 deg }
+    sample pin { t: 0 deg .. 180 deg by 61, z: -5 mm .. 5 mm by 3 }
+    mount pin on m.lantern
+    mount flank on m.wheel
+    motion turn : angle in -10 deg .. 65 deg
+    unknown lag : angle in -90 deg / 42 .. 90 deg / 42
+    drive m.lantern, m.wheel = turn, -turn * 10 / 42 + lag
+    contact driving = pin with flank, over: turn, for: lag, every: 36 deg
+}
+";
+    let out = folder("contact_lantern");
+    let spec = written(&out, "pair.chain", SPEC);
+    let found = document(&["contact", &spec, "--no-picture", "--out", out.to_str().unwrap()], 0);
+    assert_eq!(found["not_done"], serde_json::json!([]));
+    let ratio = number(&found, "ratio");
+    assert!((ratio - 41.0 / 36.0).abs() < 1e-6, "{ratio}");
+    assert!(number(&found["error"], "peak_to_peak") < 1e-6, "{}", found["error"]);
+}

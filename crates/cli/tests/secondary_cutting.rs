@@ -392,3 +392,62 @@ fn what_was_not_looked_at_is_said() {
     let forms = told("tests/surfaces/specs/ring_by_equation.chain", &[]);
     assert!(forms.len() == 1 && forms[0].1.as_str().unwrap().contains("given by an equation"), "{forms:?}");
 }
+
+/// A straight blade of a face mill, written as a line and as a spline through points of it, which has no value beyond its ends: they cut
+/// the same points away, and all positions are looked at.
+#[test]
+fn a_spline_cuts_like_the_line_that_it_follows() {
+    let spec = |side: &str| {
+        format!(
+            "machine cradle {{
+    axis Q : rotary
+    axis W : rotary
+    frame bed
+    frame cradle in bed = rotate_z(Q - 5 deg) translate_x(152 mm)
+    frame cutter in cradle = rotate_z(80 deg) rotate_x(15 deg)
+    frame root in bed = translate(0 mm, -31.75 mm, -4 mm) rotate_y(95 deg)
+    frame work in root = translate_z(3 mm) rotate_z(W)
+    couple W = 4.2 * Q
+}}
+tool blade {{
+    param radius : length = 75.2 mm
+    profile edge {{
+        tip  = arc(center: [radius, -1 mm], radius: 1 mm, from: 90 deg, to: 22 deg)
+        side = {side}
+    }}
+    surface outer(s: along edge, t: angle in -180 deg .. 180 deg) {{
+        at = [edge(s)[0] * cos(t), edge(s)[0] * sin(t), edge(s)[1]]
+        body towards [-cos(t), -sin(t), -0.8]
+    }}
+}}
+job pinion {{
+    machine m = cradle
+    tool b = blade
+    mount b on m.cutter
+    motion roll : angle in -50 deg .. 50 deg
+    drive m.Q = roll
+    surface flank in m.work = envelope(b.outer, over: roll)
+    sample flank.tip {{ s: b.edge.tip.from .. b.edge.tip.to by 3, t: -180 deg .. 170 deg by 36 }}
+}}
+"
+        )
+    };
+    let point = |along: u32| {
+        format!(
+            "[radius + 1 mm * cos(22 deg) + {along} mm * sin(22 deg), 1 mm * sin(22 deg) - 1 mm - {along} mm * cos(22 deg)]"
+        )
+    };
+    let [line, spline] = [
+        format!("line(from: {}, to: {})", point(0), point(14)),
+        format!("spline([{}])", [0, 5, 9, 14].map(point).join(", ")),
+    ]
+    .map(|side| {
+        let at = folder("secondary_spline");
+        let run = |folder: &str| solved(folder, &written(&at, "pinion.chain", &spec(&side)), "pinion", &[]);
+        run("secondary_spline_points")
+    });
+    let verdicts = |rows: &[Row]| rows.iter().map(|row| row.status.clone()).collect::<Vec<String>>();
+    assert_eq!(verdicts(&line), verdicts(&spline));
+    let cut = line.iter().filter(|row| row.reason.contains("in another position")).count();
+    assert!(cut >= 10, "{cut} of {}", line.len());
+}

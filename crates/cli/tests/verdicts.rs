@@ -473,3 +473,103 @@ job crown {
     expect all solved
 }
 ";
+
+/// A Wankel engine: the rotor is what its housing leaves of it, and both waists of the housing touch the same flank. The search in the
+/// middle of the sample does not come to its end; what is found elsewhere counts.
+#[test]
+fn branches_that_are_found_beside_an_unfinished_search_are_told_as_such() {
+    const SPEC: &str = "machine engine {
+    axis A : rotary
+    frame housing
+    frame crank in housing = rotate_z(3 * A) translate_x(15 mm)
+    frame rotor in crank   = rotate_z(-2 * A)
+}
+tool seal {
+    surface tip(t: angle in -180 deg .. 180 deg, w: length in -30 mm .. 30 mm) {
+        at = [100 mm + 2 mm * cos(t), 2 mm * sin(t), w]
+        body towards [-cos(t), -sin(t), 0]
+    }
+}
+job rotor {
+    machine m = engine
+    machine n = engine
+    tool s = seal
+    mount s on m.rotor
+    motion turn : angle in -180 deg .. 180 deg
+    motion back : angle in -180 deg .. 180 deg
+    drive m.A = turn
+    drive n.A = back
+    surface bore in m.housing = envelope(s.tip, over: turn)
+    mount bore on n.housing
+    surface flank in n.rotor = envelope(bore, over: back)
+    sample flank {
+        polar_angle: 10 deg .. 110 deg by 11, z: 0 mm .. 10 mm by 2
+        keep rho: 65 mm .. 104 mm, keep t: -60 deg .. 60 deg
+    }
+}
+";
+    let folder = folder("unfinished");
+    let (_, flank) = solved(&folder, SPEC, 0);
+    assert_eq!(flank["outcomes"], serde_json::json!({ "ambiguous": 22 }), "{flank}");
+    let found = flank["branches"]["found"].as_array().expect("branches");
+    assert_eq!(found.len(), 2, "{found:?}");
+    for branch in found {
+        assert!(branch["keep"].is_object(), "{branch}");
+        let unknown = |name: &str| {
+            let all = branch["unknowns"].as_array().expect("unknowns");
+            let of = all.iter().find(|of| of["name"] == name).expect(name);
+            of["value"].as_f64().expect("a number").to_radians()
+        };
+        // the normal of the housing passes through the pole of the turn that made it, and meets the circle of poles once more where the
+        // housing makes the rotor
+        let (turn, back) = (unknown("turn"), unknown("back"));
+        let towards = |angle: f64| [angle.cos(), angle.sin()];
+        let (crank, apex) = (towards(3.0 * turn), towards(turn));
+        let pole = crank.map(|x| -30.0 * x);
+        let along = [0, 1].map(|k| 45.0 * crank[k] + 100.0 * apex[k]);
+        let dot = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] + a[1] * b[1];
+        let share = 2.0 * dot(pole, along) / dot(along, along);
+        let other = [0, 1].map(|k| pole[k] - share * along[k]);
+        let off_pole = [0, 1].map(|k| other[k] + 30.0 * towards(3.0 * back)[k]);
+        assert!(dot(off_pole, off_pole).sqrt() < 1e-9, "{off_pole:?}");
+        let length = dot(along, along).sqrt();
+        let at = [0, 1].map(|k| pole[k] + along[k] * (1.0 + 2.0 / length) - 15.0 * towards(3.0 * back)[k]);
+        let (cos, sin) = (back.cos(), back.sin());
+        let in_rotor = [cos * at[0] + sin * at[1], cos * at[1] - sin * at[0]];
+        for (k, value) in in_rotor.into_iter().enumerate() {
+            let told = branch["position"][k].as_f64().expect("a number");
+            assert!((told - value).abs() < 1e-9, "{told} {value}");
+        }
+    }
+}
+
+/// A ball on a plane way touches with its pole alone, where the angle about the pole is anything: roots that lead nowhere are no branches.
+#[test]
+fn roots_that_lead_nowhere_are_no_branches() {
+    const SPEC: &str = "machine table {
+    axis X : linear
+    axis Y : linear
+    frame work
+    frame head in work = translate(X, Y, 0 mm)
+}
+tool ball {
+    surface cap(a: angle in -180 deg .. 180 deg, b: angle in 0 deg .. 90 deg) {
+        at = [5 mm * cos(a) * sin(b), 5 mm * sin(a) * sin(b), -5 mm * cos(b)]
+        body towards [-cos(a) * sin(b), -sin(a) * sin(b), cos(b)]
+    }
+}
+job plane {
+    machine m = table
+    tool t = ball
+    mount t on m.head
+    motion across : length in -40 mm .. 40 mm
+    motion along : length in -40 mm .. 40 mm
+    drive m.X, m.Y = across, along
+    surface floor in m.work = envelope(t.cap, over: [across, along])
+    sample floor { x: -15 mm .. 15 mm by 5, y: 10 mm .. 25 mm by 5 }
+}
+";
+    let folder = folder("poles");
+    let (_, floor) = solved(&folder, SPEC, 0);
+    assert!(floor["outcomes"]["ambiguous"].is_null() && floor["solved"] == 0, "{}", floor["outcomes"]);
+}

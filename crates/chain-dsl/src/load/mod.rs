@@ -29,6 +29,8 @@ pub(crate) struct Loaded {
     pub(crate) used: Vec<(Span, FileId)>,
     /// The project folder of each file; a text that is not a file has none.
     pub(crate) projects: HashMap<FileId, PathBuf>,
+    /// The file that was asked for: the last one, unless the one beside it uses it.
+    pub(crate) main: Option<FileId>,
     /// The file that was asked for beside the main one.
     pub(crate) beside: Option<FileId>,
 }
@@ -57,6 +59,7 @@ pub(crate) fn load(from: Arc<dyn Files>, path: &Path, beside: Option<&Path>) -> 
             lacks_files: false,
             used: Vec::new(),
             projects: HashMap::new(),
+            main: None,
             beside: None,
         },
         project: PathBuf::new(),
@@ -66,10 +69,10 @@ pub(crate) fn load(from: Arc<dyn Files>, path: &Path, beside: Option<&Path>) -> 
     };
     if let Some(beside) = beside {
         loader.asked_for(beside);
-        let real = loader.loaded.from.real_path(beside).ok();
-        loader.loaded.beside = real.and_then(|found| loader.known.get(&found).copied());
+        loader.loaded.beside = loader.id_of(beside);
     }
     loader.asked_for(path);
+    loader.loaded.main = loader.id_of(path).or(loader.loaded.files.last().map(|(id, _)| *id));
     loader.loaded
 }
 
@@ -142,6 +145,7 @@ pub(crate) fn load_text(name: &str, text: &str) -> Loaded {
         lacks_files,
         used: Vec::new(),
         projects,
+        main: Some(id),
         beside: None,
     }
 }
@@ -156,6 +160,12 @@ pub fn project_folder(from: &dyn Files, real: &Path) -> PathBuf {
 }
 
 impl Loader {
+    /// A file that was read.
+    fn id_of(&self, path: &Path) -> Option<FileId> {
+        let real = self.loaded.from.real_path(path).ok()?;
+        self.known.get(&real).copied()
+    }
+
     /// A file that no other one asks for; it lies in a project of its own.
     fn asked_for(&mut self, path: &Path) {
         match self.loaded.from.real_path(path) {

@@ -460,6 +460,20 @@ fn a_machine_beside_a_job_uses_files_of_its_own_project() {
     assert!(made.iter().all(|finding| finding.severity() != Severity::Error), "{made:?}");
 }
 
+/// The target of a conversion may be made of what stands in the job's own file, which is then read before it.
+#[test]
+fn a_machine_beside_a_job_may_use_the_file_of_the_job() {
+    let machine = "use \"j.chain\"\nmachine other {\n    axis X : linear\n    frame bed\n    frame slide in bed = translate_x(X)\n}\n";
+    let files = [("library.chain", LIBRARY), ("jobs/j.chain", JOB), ("jobs/other.chain", machine)];
+    let folder = project("beside_own", &files);
+    let graph = Graph::new();
+    let mut made = compile_with_machine(&graph, &folder.join("jobs/j.chain"), &folder.join("jobs/other.chain"), &[]);
+    assert!(made.diagnostics.iter().all(|finding| finding.severity() != Severity::Error), "{:?}", made.diagnostics);
+    assert_eq!(made.machine.as_ref().map(|machine| machine.machines[0].name.as_str()), Some("other"));
+    let jobs = made.take_jobs(&["j"]).expect("it is a job of the file that was asked for");
+    assert_eq!(jobs.len(), 1);
+}
+
 /// A text that comes from elsewhere stands where its file would.
 #[test]
 fn a_text_is_read_in_the_place_of_its_file() {

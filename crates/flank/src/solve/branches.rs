@@ -115,7 +115,7 @@ pub(crate) fn begun(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
         let (name, at) = (&solved.surface.name, anchor(solved));
         if solved.effort.is_kept_elsewhere {
             let message = format!(
-                "no branch of {name} has a point in the middle of its grid: what its `keep` asks for was looked at {at}"
+                "no branch of {name} was found in the middle of its grid: what its `keep` asks for was looked at {at}"
             );
             out.push(Remark::new(RemarkKind::BegunElsewhere, name, message));
         }

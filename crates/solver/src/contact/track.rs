@@ -66,9 +66,10 @@ impl<'p> Track<'p> {
 
     /// The height of the pair that carries at a step, as far as it is known.
     fn carrying(&self, step: isize) -> Option<f64> {
-        let first = self.points.keys().next()?;
+        let (first, last) = (self.points.keys().next()?, *self.points.keys().next_back()?);
         let behind = (step - first).rem_euclid(self.pitch) + first;
-        let pairs = (behind..).step_by(self.pitch.unsigned_abs()).map_while(|step| self.points.get(&step));
+        // a contact may stand alone, with none at the steps beside it
+        let pairs = (behind..=last).step_by(self.pitch.unsigned_abs()).filter_map(|step| self.points.get(&step));
         pairs.map(ContactPoint::height).reduce(f64::max)
     }
 

@@ -6,7 +6,7 @@
 use flank_expr::LANES;
 
 use crate::continuation::anchor::{course, follow_alone};
-use crate::continuation::choice::{Choice, is_same_root};
+use crate::continuation::choice::{Choice, Several, is_same_root};
 use crate::continuation::field::Field;
 use crate::continuation::grid::{Elsewhere, Followed, Grid, GridReport, extrapolated};
 use crate::continuation::reach::{back_into, is_within};
@@ -15,6 +15,7 @@ use crate::newton::batch::LaneNewton;
 use crate::newton::multistart::probe;
 use crate::newton::scalar::solve_with;
 use crate::newton::solvers::Solvers;
+use crate::roots::{Doubt, Undecided};
 
 /// Steps from the first row, or column, to the last one that a finer grid has at the least.
 const FINE: usize = 32;
@@ -124,7 +125,9 @@ fn with_others(
     choice: &Choice<'_>,
 ) -> Followed {
     let is_undecided = grid.effort.anchor != grid.target_at([0.5; 2]) && grid.effort.branches.len() == 1;
-    if followed.field.outcome(0) == Some(Outcome::Ambiguous) || !is_undecided && !choice.tells_others {
+    let is_nowhere = (0..followed.field.len()).all(|point| !followed.field.is_root(point));
+    let is_settled = !is_undecided && !is_nowhere;
+    if followed.field.outcome(0) == Some(Outcome::Ambiguous) || is_settled && !choice.tells_others {
         return followed;
     }
     let shares = MORE_PLACES.into_iter().flat_map(|v| MORE_PLACES.map(|u| [v, u]));
@@ -162,6 +165,11 @@ fn with_others(
         }
     }
     let others = others.found;
+    // a root that leads nowhere is one of many at a place where the equations fix no single point
+    let leads_on = |(_, field): &(Elsewhere, Field)| field.solved() > 1 || field.len() == 1;
+    if is_nowhere && others.iter().any(leads_on) {
+        return begun_at(grid, others.into_iter().filter(leads_on).collect(), choice);
+    }
     if is_undecided && !others.is_empty() {
         grid.effort.places = vec![grid.effort.anchor];
         grid.effort.courses = vec![course(&followed.field)];
@@ -176,6 +184,26 @@ fn with_others(
         grid.effort.elsewhere = others.into_iter().map(|(elsewhere, _)| elsewhere).collect();
     }
     followed
+}
+
+/// The branch that is meant where none was followed, of those that were found elsewhere: there is at least one.
+fn begun_at(grid: &mut Grid<'_>, others: Vec<(Elsewhere, Field)>, choice: &Choice<'_>) -> Followed {
+    grid.effort.anchor = others[0].0.place;
+    // not all of the ranges was looked at there either
+    if !grid.effort.undecided.is_empty() {
+        grid.effort.undecided = vec![Undecided { ranges: choice.kept(grid.ranges), why: Doubt::Budget }];
+    }
+    grid.effort.is_given_up = false;
+    grid.effort.is_kept_elsewhere = choice.keep.is_some();
+    grid.effort.branches = others.iter().map(|(other, _)| other.root.clone()).collect();
+    let fields = others.iter().map(|(_, field)| field);
+    if others.len() > 1 && choice.several == Several::Refuse {
+        grid.effort.places = others.iter().map(|(other, _)| other.place).collect();
+        grid.effort.courses = fields.map(course).collect();
+        return Followed { field: grid.ambiguous(), is_beyond: false };
+    }
+    let widest = others.into_iter().map(|(_, field)| field).reduce(|a, b| if b.solved() > a.solved() { b } else { a });
+    Followed { field: widest.expect("at least one"), is_beyond: false }
 }
 
 /// Branches beside the one that was followed.

@@ -185,6 +185,21 @@ impl Seen<'_> {
         self.evaluator.run(&at, &mut self.out);
     }
 
+    /// The same, also at a place beyond a range where the surface has no value, as beyond the ends of a spline: there it goes on along
+    /// its tangents at the end.
+    fn run_on(&mut self, at: [f64; 2]) {
+        self.run(at);
+        if !self.out.iter().any(|value| value.is_nan()) {
+            return;
+        }
+        let end = [0, 1].map(|k| at[k].clamp(self.piece.ranges[k].low, self.piece.ranges[k].high));
+        self.run(end);
+        let past = [0, 1].map(|k| at[k] - end[k]);
+        for k in 0..3 {
+            self.out[k] += past[0] * self.out[6 + k] + past[1] * self.out[9 + k];
+        }
+    }
+
     fn vector(&self, k: usize) -> Vector3<f64> {
         Vector3::new(self.out[3 * k], self.out[3 * k + 1], self.out[3 * k + 2])
     }
@@ -245,7 +260,7 @@ impl Seen<'_> {
     pub(super) fn foot(&mut self, point: &Vector3<f64>, start: [f64; 2]) -> Found {
         let mut at = start;
         for _ in 0..MOST_STEPS {
-            self.run(at);
+            self.run_on(at);
             let step = Step::new([point.x, point.y, point.z], at, self.piece.steps, |k| self.out[k]);
             if let Some(found) = self.piece.ended(at, &step, || self.vector(1)) {
                 return found;
@@ -267,6 +282,8 @@ impl Seen<'_> {
         let mut points = [[0.0; LANES]; 3];
         let mut at = [[0.0; LANES]; 2];
         let mut steps = Steps::default();
+        // those whose way left the places where the surface has a value
+        let mut left = Vec::new();
         let put = |points: &mut [[f64; LANES]; 3], at: &mut [[f64; LANES]; 2], lane: usize, number: usize| {
             let (point, start) = &wanted[number];
             (0..3).for_each(|k| points[k][lane] = point[k]);
@@ -295,6 +312,9 @@ impl Seen<'_> {
                         kept += 1;
                     }
                     ended => {
+                        if step.along.is_nan() {
+                            left.push(number);
+                        }
                         found[number] = ended.unwrap_or(Found::Lost);
                         if next < wanted.len() {
                             open[kept] = Open { number: next, steps: 0 };
@@ -305,6 +325,10 @@ impl Seen<'_> {
                 }
             }
             open.truncate(kept);
+        }
+        for number in left {
+            let (point, start) = wanted[number];
+            found[number] = self.foot(&point, start);
         }
         found
     }
