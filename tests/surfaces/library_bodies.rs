@@ -59,6 +59,7 @@ fn check_of_genus(spec: &str, expected: &[(&str, u32)], genus: i64) {
         for body in &result.solids {
             let name = &body.name;
             found.push((name.as_str(), body.teeth));
+            assert_eq!(body.into_steel, [""; 0], "{spec} {name}");
             // polynomials through exact points, whose last coefficients are rounding
             assert!(body.error_mm < 1e-8, "{spec} {name}: {}", body.error_mm);
             let alone = result.solids.len() + result.not_done().len() == 1;

@@ -272,6 +272,21 @@ job rotor extends female_rotor {
     }
 }
 
+/// The rack of a form tool by the tool's own surfaces: each of them faces the other way.
+#[test]
+fn surfaces_that_face_into_the_steel_are_told() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let told = |changed| {
+        let rack = Asked::new("specs/bodies/rack_body.chain", "rack_body", &[]);
+        let result = Asked { changed, ..rack }.built(folder.path());
+        let told = result.to_string().contains("point into the steel");
+        (result.solids[0].into_steel.clone(), told)
+    };
+    assert_eq!(told(None), (Vec::new(), false));
+    let all = ["flank_minus", "fillet_minus", "root", "fillet_plus", "flank_plus"].map(str::to_string).to_vec();
+    assert_eq!(told(Some(("= envelope(", "= move("))), (all, true));
+}
+
 /// Slots with leaning walls, each wider than the one before: where some teeth are pointed and others not, that is told with how many and by how much,
 /// and teeth that are all pointed end in edges.
 #[test]

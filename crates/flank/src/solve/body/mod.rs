@@ -132,7 +132,7 @@ fn one(
     (request, header): (&SolidRequest, &Header),
     (folder, session): (&mut Folder<'_>, Session<'_>),
 ) -> Result<(SolidNumbers, Shapes, Option<NotDone>), Failure> {
-    let space::Space { body, names, off: error } = space::body(job, solid, session)?;
+    let space::Space { body, names, off: error, into_steel } = space::body(job, solid, session)?;
     let part = match request.part {
         // from the middle of its space to the middle of the same one a gear of one tooth goes all around
         _ if body.teeth() == 1 && body.arrangement().is_closed() => BodyPart::Gear,
@@ -165,6 +165,7 @@ fn one(
     let numbers = SolidNumbers {
         step_deviation_mm: faces.as_ref().map(|faces| faces.deviation),
         gauges: gauges::measured(&body, request.ball),
+        into_steel,
         ..SolidNumbers::new((&solid.name, &solid.frame, names), (&body, error), request.density, (&mesh, off))
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));

@@ -40,6 +40,9 @@ pub struct SolidNumbers {
     pub teeth: u32,
     /// The surfaces of one space, in the order of the spec.
     pub surfaces: Vec<String>,
+    /// Those of them whose normals point into the body, as those of a tool do that is shown by `move`: of it right and left flank, and material
+    /// and its lack, are in each other's place where it is measured.
+    pub into_steel: Vec<String>,
     /// How far the polynomials through exact points, by which everything below is measured, are off between these at the most, mm.
     pub error_mm: f64,
     /// Of the whole gear, as for all that follows.
@@ -184,6 +187,7 @@ impl SolidNumbers {
             frame: frame.to_string(),
             teeth: body.teeth(),
             surfaces,
+            into_steel: Vec::new(),
             error_mm: error,
             volume_mm3: volume,
             area_mm2: area,
@@ -249,6 +253,13 @@ impl fmt::Display for SolidNumbers {
             units::off(mesh.deviation_mm),
             mesh.volume_mm3
         )?;
+        if !self.into_steel.is_empty() {
+            writeln!(
+                f,
+                "  normals  of {} point into the steel, as those of a tool do: `envelope(…)`, over no motion where the tool has the form, points out of it",
+                self.into_steel.join(", ")
+            )?;
+        }
         let told = |step: f64| format!("  faces    off by at most {} in the STEP file\n", units::off(step));
         f.write_str(&self.step_deviation_mm.map(told).unwrap_or_default())?;
         write!(f, "{}", self.gauges)

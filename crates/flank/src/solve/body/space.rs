@@ -3,6 +3,7 @@
 use flank_chain_dsl::{Job, Parameter, Solid};
 use flank_expr::VariableId;
 use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, SurfacePoints};
+use nalgebra::Vector3;
 
 use crate::project::failure::Failure;
 use crate::project::session::Session;
@@ -24,6 +25,15 @@ pub(crate) struct Space {
     pub(crate) names: Vec<String>,
     /// How far the charts are off between their points at the most, mm.
     pub(crate) off: f64,
+    /// Which of the names have normals that point into the body.
+    pub(crate) into_steel: Vec<String>,
+}
+
+/// A chart, and its surface's normal in the middle times the chart's own: negative where they point to different sides.
+#[derive(Clone)]
+struct Charted {
+    chart: Chart,
+    facing: f64,
 }
 
 /// The jobs that have solids.
@@ -66,9 +76,9 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
         _ => failure,
     };
     let faulty = |fault: BodyFault, has_edge: bool| outside(refusal::faulty(solid, (&blank, &names, has_edge), fault));
-    let (body, off) = match between(solid, (&spaces, &borders, &blank), session).map_err(outside)? {
-        (Ok(body), off) => (body, off),
-        (Err(fault), _) => {
+    let (body, off, facing) = match between(solid, (&spaces, &borders, &blank), session).map_err(outside)? {
+        (Ok(body), off, facing) => (body, off, facing),
+        (Err(fault), ..) => {
             let has_edge = borders[0].has_edge();
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
             let edges = borders
@@ -76,11 +86,16 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
                 .zip(&beside)
                 .map(|(borders, beside)| borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed));
             let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault, has_edge))?;
-            let (body, off) = between(solid, (&spaces, &borders, &blank), session)?;
-            (body.map_err(|fault| faulty(fault, true))?, off)
+            let (body, off, facing) = between(solid, (&spaces, &borders, &blank), session)?;
+            (body.map_err(|fault| faulty(fault, true))?, off, facing)
         }
     };
-    Ok(Space { body, names: names.into_iter().map(str::to_string).collect(), off })
+    let names: Vec<String> = names.into_iter().map(str::to_string).collect();
+    // the rows of a body's charts run so that their normals point out of it
+    let turned = if body.is_reversed() { -1.0 } else { 1.0 };
+    let into_steel =
+        names.iter().zip(&facing).filter(|(_, facing)| turned * **facing < 0.0).map(|(name, _)| name.clone());
+    Ok(Space { into_steel: into_steel.collect(), names, off, body })
 }
 
 /// That the flanks of a space lie outside the outline, if they do.
@@ -151,28 +166,29 @@ fn beside<'j, 'g>(solid: &Solid, spaces: &[Vec<Piece<'j, 'g>>], space: usize) ->
     vec![between(&before, &behind), between(&behind, &before)]
 }
 
-/// The body between borders, and how far its charts are off.
+/// The body between borders, how far its charts are off, and to which side of the charts the surfaces' normals point.
 fn between(
     solid: &Solid,
     (spaces, borders, blank): (&[Vec<Piece<'_, '_>>], &[Borders<'_, '_>], &Blank),
     session: Session<'_>,
-) -> Result<(Result<Body, BodyFault>, f64), Failure> {
+) -> Result<(Result<Body, BodyFault>, f64, Vec<f64>), Failure> {
     let last = COUNTS.len() - 1;
     // which of the counts the rows of each surface have, and the columns, which neighbours share
     let (mut rows, mut columns) = (vec![0; spaces[0].len()], 0);
-    let mut charts: Vec<Vec<Chart>> = vec![Vec::new(); spaces.len()];
+    let mut charts: Vec<Vec<Charted>> = vec![Vec::new(); spaces.len()];
     loop {
         for ((pieces, borders), charts) in spaces.iter().zip(borders).zip(&mut charts) {
             session.check()?;
             let made = |k: usize| {
                 let counts = [COUNTS[rows[k]], COUNTS[columns]];
-                let known = charts.get(k).filter(|chart| chart.counts() == counts).cloned();
+                let known = charts.get(k).filter(|charted| charted.chart.counts() == counts).cloned();
                 known.map_or_else(|| chart((solid, k), &pieces[k], (borders, blank), counts), Ok)
             };
             *charts = (0..pieces.len()).map(made).collect::<Result<_, Failure>>()?;
         }
-        let tails: Vec<[f64; 2]> =
-            (0..rows.len()).map(|k| charts.iter().map(|charts| charts[k].tails()).fold([0.0; 2], larger)).collect();
+        let tails: Vec<[f64; 2]> = (0..rows.len())
+            .map(|k| charts.iter().map(|charts| charts[k].chart.tails()).fold([0.0; 2], larger))
+            .collect();
         let [_, along] = tails.iter().copied().fold([0.0; 2], larger);
         let before = (rows.clone(), columns);
         for (rows, [across, _]) in rows.iter_mut().zip(&tails) {
@@ -182,7 +198,10 @@ fn between(
         if before == (rows.clone(), columns) {
             let off = tails.into_iter().flatten().fold(0.0, f64::max);
             let arrangement = blank::arrangement(solid);
-            return Ok((Body::new(blank.clone(), (arrangement, solid.teeth), charts, borders[0].has_edge()), off));
+            let facing = charts[0].iter().map(|charted| charted.facing).collect();
+            let charts = charts.into_iter().map(|space| space.into_iter().map(|charted| charted.chart).collect());
+            let body = Body::new(blank.clone(), (arrangement, solid.teeth), charts.collect(), borders[0].has_edge());
+            return Ok((body, off, facing));
         }
     }
 }
@@ -197,7 +216,7 @@ fn chart(
     piece: &Piece<'_, '_>,
     (borders, blank): (&Borders<'_, '_>, &Blank),
     [rows, columns]: [usize; 2],
-) -> Result<Chart, Failure> {
+) -> Result<Charted, Failure> {
     let (unknown, shares, along) = (borders.unknowns[k], Chart::shares(rows), Chart::shares(columns));
     let end = |side: usize| {
         let shared = borders.values(solid, (k, side), blank, &along);
@@ -214,7 +233,11 @@ fn chart(
     };
     let points = piece.solved(piece.across(unknown, blank), (&targets, [rows, columns]), far);
     all_solved(solid, (piece, "its neighbours and the tip"), &points)?;
-    Ok(Chart::through(positions(&points), [rows, columns]))
+    let chart = Chart::through(positions(&points), [rows, columns]);
+    // of odd numbers of rows and columns there is a point in the middle
+    let normal = Vector3::from(points.point(rows / 2 * columns + columns / 2).normal);
+    let [_, across, far] = chart.frame([0.5; 2]).map(Vector3::from);
+    Ok(Charted { facing: normal.dot(&far.cross(&across)), chart })
 }
 
 /// The values of an unknown where a surface reaches the tip.
