@@ -49,6 +49,14 @@ pub(crate) fn with_solids<'j, 'g>(jobs: &'j [Job<'g>]) -> Result<Vec<&'j Job<'g>
     Ok(meant)
 }
 
+/// What lies between the borders of a space.
+struct Between {
+    body: Result<Body, BodyFault>,
+    off: f64,
+    /// Of the charts in the order in which they are given.
+    facing: Vec<f64>,
+}
+
 /// # Errors
 /// If the surfaces of the space are no chain of neighbours from tip to tip, or bound no body.
 pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result<Space, Failure> {
@@ -76,9 +84,10 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
         _ => failure,
     };
     let faulty = |fault: BodyFault, has_edge: bool| outside(refusal::faulty(solid, (&blank, &names, has_edge), fault));
-    let (body, off, facing) = match between(solid, (&spaces, &borders, &blank), session).map_err(outside)? {
-        (Ok(body), off, facing) => (body, off, facing),
-        (Err(fault), ..) => {
+    let first = between(solid, (&spaces, &borders, &blank), session).map_err(outside)?;
+    let (body, off, facing) = match first.body {
+        Ok(body) => (body, first.off, first.facing),
+        Err(fault) => {
             let has_edge = borders[0].has_edge();
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
             let edges = borders
@@ -86,7 +95,7 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
                 .zip(&beside)
                 .map(|(borders, beside)| borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed));
             let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault, has_edge))?;
-            let (body, off, facing) = between(solid, (&spaces, &borders, &blank), session)?;
+            let Between { body, off, facing } = between(solid, (&spaces, &borders, &blank), session)?;
             (body.map_err(|fault| faulty(fault, true))?, off, facing)
         }
     };
@@ -166,12 +175,12 @@ fn beside<'j, 'g>(solid: &Solid, spaces: &[Vec<Piece<'j, 'g>>], space: usize) ->
     vec![between(&before, &behind), between(&behind, &before)]
 }
 
-/// The body between borders, how far its charts are off, and to which side of the charts the surfaces' normals point.
+/// The body between borders.
 fn between(
     solid: &Solid,
     (spaces, borders, blank): (&[Vec<Piece<'_, '_>>], &[Borders<'_, '_>], &Blank),
     session: Session<'_>,
-) -> Result<(Result<Body, BodyFault>, f64, Vec<f64>), Failure> {
+) -> Result<Between, Failure> {
     let last = COUNTS.len() - 1;
     // which of the counts the rows of each surface have, and the columns, which neighbours share
     let (mut rows, mut columns) = (vec![0; spaces[0].len()], 0);
@@ -201,7 +210,7 @@ fn between(
             let facing = charts[0].iter().map(|charted| charted.facing).collect();
             let charts = charts.into_iter().map(|space| space.into_iter().map(|charted| charted.chart).collect());
             let body = Body::new(blank.clone(), (arrangement, solid.teeth), charts.collect(), borders[0].has_edge());
-            return Ok((body, off, facing));
+            return Ok(Between { body, off, facing });
         }
     }
 }
