@@ -2,7 +2,7 @@
 
 use crate::geometry::chain::Chain;
 use crate::geometry::pose::Twist;
-use crate::geometry::turned::{Turn, Turned};
+use crate::geometry::turned::Turned;
 use crate::geometry::vector::Vector3;
 use crate::symbolic::graph::Expr;
 
@@ -154,10 +154,9 @@ impl<'g> Surface<'g> {
 
     /// What a twist does to the point along the normal, from a frame that is turned about an axis as both are; `None` if they are not.
     fn before_turn(&self, axis: usize, twist: &Twist<'g>) -> Option<Expr<'g>> {
-        let [position, normal] = [self.position, self.normal].map(|vector| Turned::about(axis, vector));
-        let (position, normal) = (position?, normal?);
-        let turn: Turn<'g> = position.turn;
+        let Turned { before: position, turn } = Turned::about(axis, self.position)?;
+        let normal = Turned::about(axis, self.normal).filter(|normal| normal.turn == turn)?.before;
         let twist = Twist { angular: turn.back(twist.angular), linear: turn.back(twist.linear) };
-        (normal.turn == turn).then(|| normal.before.dot(twist.velocity(position.before)))
+        Some(normal.dot(twist.velocity(position)))
     }
 }
