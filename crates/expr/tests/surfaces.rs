@@ -3,7 +3,7 @@
 mod support;
 
 use flank_expr::geometry::{Axis, Chain, Step, Surface, Vector3};
-use flank_expr::{Expr, Graph};
+use flank_expr::{Expr, Graph, Interval, IntervalEvaluator, Tape};
 use nalgebra as na;
 use support::Random;
 use support::frames::{Point, Setting, slope};
@@ -148,6 +148,14 @@ fn a_thread_that_turns_about_its_axis_meshes_by_one_angle() {
         let (found, expected) = (setting.number(meshing, &at), determinant(&setting, &t_work_hob, &tube, &at));
         assert!((found.abs() - expected.abs()).abs() < 1e-6 * (1.0 + expected.abs()), "{found} instead of {expected}");
     }
+    // before the turn it is linear in one sine and one cosine; products of several are enclosed 0.4 wide over the same box
+    let [.., (_, helicoid)] = tools(&setting);
+    let meshing = helicoid.meshing(&t_work_hob, motion);
+    let tape = Tape::new(&[meshing], &[u, v, motion]).expect("all variables are inputs");
+    let mut enclosed = [Interval::WHOLE];
+    let inputs = [Interval::point(0.5), Interval::new(0.2, 0.3), Interval::point(0.7)];
+    IntervalEvaluator::new(&tape).run(&inputs, &mut enclosed);
+    assert!(enclosed[0].width() < 0.1, "{:?}", enclosed[0]);
 }
 
 #[test]
