@@ -40,8 +40,8 @@ pub struct SolidNumbers {
     pub teeth: u32,
     /// The surfaces of one space, in the order of the spec.
     pub surfaces: Vec<String>,
-    /// Those of them whose normals point into the body, as those of a tool do that is shown by `move`: of it right and left flank, and material
-    /// and its lack, are in each other's place where it is measured.
+    /// Those of them whose normals point into the body, as those of a tool do that is shown by `move`. Where such a surface is measured, right
+    /// and left flank, and material and its lack, are in each other's place.
     pub into_steel: Vec<String>,
     /// How far the polynomials through exact points, by which everything below is measured, are off between these at the most, mm.
     pub error_mm: f64,
