@@ -410,7 +410,7 @@ impl<'g> Builder<'_, 'g> {
         if let [name] = path.segments.as_slice()
             && !self.pieces_of(&name.node).is_empty()
         {
-            return self.sample_profile(context, of, name, written);
+            return self.sample_profile(context, of, name, (written, job));
         }
         let Some(index) = self.finished(context, path, job) else { return };
         if of.name.is_none() && self.surfaces[index].0.sample.is_some() {
@@ -431,7 +431,14 @@ impl<'g> Builder<'_, 'g> {
     }
 
     /// All pieces of a surface by the run along the profile that they come from: each has the values that lie on it.
-    fn sample_profile(&mut self, context: &mut Context<'g>, of: &ast::Sampled, name: &Name, written: &ast::Sample) {
+    /// Samples the pieces of a profile; those with a sample of their own are left to it.
+    fn sample_profile(
+        &mut self,
+        context: &mut Context<'g>,
+        of: &ast::Sampled,
+        name: &Name,
+        (written, job): (&ast::Sample, &ast::Job),
+    ) {
         let is_piece =
             |surface: &GeneratedSurface<'g>| surface.name.split_once('.').is_some_and(|(whole, _)| whole == name.node);
         let pieces: Vec<usize> = (0..self.surfaces.len()).filter(|k| is_piece(&self.surfaces[*k].0)).collect();
@@ -457,6 +464,9 @@ impl<'g> Builder<'_, 'g> {
         let ends = runs.iter().fold((f64::MAX, f64::MIN), |(low, high), run| (low.min(run.low), high.max(run.high)));
         for (at, run) in pieces.into_iter().zip(&runs) {
             let surface = &self.surfaces[at].0;
+            if of.name.is_none() && job.samples(&surface.name) {
+                continue;
+            }
             if of.name.is_none() && surface.sample.is_some() {
                 let message = format!("`{}` is sampled twice", surface.name);
                 context.report(Diagnostic::new(Code::DuplicateName, name.span, message));

@@ -238,10 +238,24 @@ fn a_whole_profile_is_sampled_as_one() {
     for (sample, code) in [
         ("sample t { rho: 34 mm .. 36 mm by 2, v: 0.1 mm .. 0.2 mm by 3 }", Code::WrongKind),
         ("sample t { s: 0 mm .. 9 mm by 3, v: 0.1 mm .. 0.2 mm by 3 }", Code::SampleShape),
-        ("sample t.short { s: 1 mm, v: 0 mm } sample t { s: 1 mm, v: 0.1 mm .. 0.2 mm by 3 }", Code::DuplicateName),
+        ("sample t { s: 1 mm, v: 0 mm } sample t { s: 1 mm, v: 0.1 mm .. 0.2 mm by 3 }", Code::DuplicateName),
     ] {
         let found: Vec<Code> = errors(&of_two_pieces(sample)).iter().map(|finding| finding.code).collect();
         assert_eq!(found, [code], "{sample}");
+    }
+}
+
+#[test]
+fn a_piece_with_a_sample_of_its_own_takes_no_part_in_that_of_the_whole() {
+    let whole = "sample t { s: 0 mm .. 8 mm by 17, v: 0.1 mm .. 0.2 mm by 2 }";
+    let own = "sample t.short { s: 1 mm .. 2 mm by 5, v: 0 mm .. 1 mm by 3 }";
+    let extended = format!("{} job k extends j {{ {own} }}", of_two_pieces(whole));
+    for text in [of_two_pieces(&[whole, own].concat()), of_two_pieces(&[own, whole].concat()), extended] {
+        let graph = Graph::new();
+        let compilation = compiled(&graph, &text);
+        let surfaces = &compilation.jobs.last().expect("a job").surfaces;
+        let counts: Vec<_> = surfaces.iter().map(|surface| surface.sample.as_ref().map(|of| of.counts)).collect();
+        assert_eq!(counts, [Some([5, 3]), Some([11, 2])], "{text}");
     }
 }
 

@@ -26,6 +26,16 @@ pub struct Job {
 }
 
 impl Job {
+    /// Whether a `sample` without a name of its own is about this surface or piece.
+    pub(crate) fn samples(&self, surface: &str) -> bool {
+        self.statements.iter().any(|statement| match statement {
+            JobStatement::Sample(sample) => {
+                sample.surfaces.iter().any(|of| of.name.is_none() && of.surface.joined() == surface)
+            }
+            _ => false,
+        })
+    }
+
     /// Its own parameters.
     pub(crate) fn params(&self) -> Vec<&Param> {
         let each = self.statements.iter().map(|statement| match statement {
