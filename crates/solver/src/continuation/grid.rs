@@ -285,7 +285,8 @@ impl<'s> Grid<'s> {
     /// All lines whose points are given by their targets, from those that are known at some places.
     pub(crate) fn compute_strips(&mut self, field: &mut Field, lines: &[usize], places: &[usize]) {
         let (system, ranges, targets) = (self.system, self.ranges, self.targets);
-        let new = || OnLine::new(system, ranges);
+        let instructions = system.instructions_on(targets.len());
+        let new = || OnLine::new(system, ranges, instructions);
         let mut on_line = new();
         let known = field.known_lines(lines, places);
         let prepare = |on_line: &mut Option<OnLine<'s>>, line: &[[f64; 2]]| {
@@ -310,9 +311,13 @@ impl<'s> Grid<'s> {
         along: Option<&Along>,
         levels: &[Vec<Midpoint>],
     ) {
-        let (targets, another) = (self.targets, solvers.another());
+        let targets = self.targets;
+        let instructions = self.system.instructions_on(targets.len());
+        let another = solvers.another(instructions);
+        let mut for_many = instructions.is_for_many().then(&another);
+        let newton = for_many.as_mut().unwrap_or_else(|| solvers.newton());
         let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, along, levels, targets);
-        self.effort.evaluations += self.on_strips(field, solvers.newton(), another, refine);
+        self.effort.evaluations += self.on_strips(field, newton, another, refine);
     }
 
     /// Whether it is work for several threads.

@@ -62,22 +62,32 @@ enum End {
 
 impl<'s> LaneNewton<'s> {
     pub(crate) fn new(system: &'s System, ranges: &'s [Range]) -> LaneNewton<'s> {
-        LaneNewton::with_tapes(system, ranges, (&system.lanes.checked, &[]), system.lanes.expected.as_ref())
+        LaneNewton::on(system, ranges, system.instructions())
+    }
+
+    /// The same with other instructions than the system says.
+    pub(crate) fn on(system: &'s System, ranges: &'s [Range], instructions: InstructionSet) -> LaneNewton<'s> {
+        let tapes = (&system.lanes.checked, &[][..], system.lanes.expected.as_ref());
+        LaneNewton::with_tapes(system, ranges, tapes, instructions)
     }
 
     /// The same with unknowns in closed form where equations give them; none if they give none.
-    pub(crate) fn with_given(system: &'s System, ranges: &'s [Range]) -> Option<LaneNewton<'s>> {
+    pub(crate) fn with_given(
+        system: &'s System,
+        ranges: &'s [Range],
+        instructions: InstructionSet,
+    ) -> Option<LaneNewton<'s>> {
         let given = system.lanes.given.as_ref()?;
-        Some(LaneNewton::with_tapes(system, ranges, (&given.checked, &given.unknowns), given.expected.as_ref()))
+        let tapes = (&given.checked, given.unknowns.as_slice(), given.expected.as_ref());
+        Some(LaneNewton::with_tapes(system, ranges, tapes, instructions))
     }
 
     fn with_tapes(
         system: &'s System,
         ranges: &'s [Range],
-        (checked, given): (&'s LaneTape, &'s [usize]),
-        expected: Option<&'s LaneTape>,
+        (checked, given, expected): (&'s LaneTape, &'s [usize], Option<&'s LaneTape>),
+        instructions: InstructionSet,
     ) -> LaneNewton<'s> {
-        let instructions = system.instructions();
         let mut linearized = LaneEvaluator::new(&system.lanes.linearized, instructions);
         let input_count = system.tape().input_count();
         let is_written_out = system.lanes.is_written_out;

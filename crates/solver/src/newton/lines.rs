@@ -67,9 +67,9 @@ pub(crate) struct OnLine<'s> {
 
 impl<'s> OnLine<'s> {
     /// None if equations do not give all unknowns.
-    pub(crate) fn new(system: &'s System, ranges: &[Range]) -> Option<OnLine<'s>> {
+    pub(crate) fn new(system: &'s System, ranges: &[Range], instructions: InstructionSet) -> Option<OnLine<'s>> {
         let tape = system.lanes.given.as_ref()?.on_lines.as_ref()?;
-        let mut evaluator = LaneEvaluator::new(tape, system.instructions());
+        let mut evaluator = LaneEvaluator::new(tape, instructions);
         let size = ranges.len();
         for (k, range) in ranges.iter().enumerate() {
             for (kind, value) in [range.width(), range.low, range.high].into_iter().enumerate() {

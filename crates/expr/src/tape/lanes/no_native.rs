@@ -21,6 +21,20 @@ impl Vectors {
     }
 }
 
+/// Loops for registers that this machine does not have.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum EightLanes {}
+
+impl EightLanes {
+    pub(super) fn available() -> Option<EightLanes> {
+        None
+    }
+
+    pub(super) fn dispatch<R>(self, _: impl FnOnce() -> R) -> R {
+        match self {}
+    }
+}
+
 /// A scalar as wide as a register.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Wide(#[expect(dead_code, reason = "there is no machine code to read it")] pub(super) [f64; 1]);
@@ -37,7 +51,7 @@ pub(super) enum Part {
 pub(super) enum Native {}
 
 impl Native {
-    pub(super) fn translate(_: &LaneTape, vectors: Vectors) -> Option<Native> {
+    pub(super) fn translate(_: &LaneTape, vectors: Vectors, _: bool) -> Option<Native> {
         match vectors {}
     }
 

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::InstructionSet;
-use super::native::{Native, Vectors};
+use super::native::Native;
 use crate::symbolic::curve::Curve;
 use crate::symbolic::op::{Binary, Unary};
 use crate::tape::{Instruction, Operation, Tape};
@@ -91,8 +91,8 @@ pub struct LaneTape {
     pub(super) outputs: Vec<u32>,
     /// How many outputs go to memory of the caller.
     pub(super) written: usize,
-    /// For four lanes and for eight.
-    native: [OnceLock<Option<Native>>; 2],
+    /// For four lanes and for eight, as the tape says and in an order that waits less.
+    native: [[OnceLock<Option<Native>>; 2]; 2],
 }
 
 /// Where the value lives that a register of the tape holds at some step.
@@ -153,8 +153,10 @@ impl LaneTape {
     }
 
     /// Its machine code, made when it is asked for first.
-    pub(super) fn native(&self, vectors: Vectors) -> Option<&Native> {
-        self.native[vectors.index()].get_or_init(|| Native::translate(self, vectors)).as_ref()
+    pub(super) fn native(&self, instructions: InstructionSet) -> Option<&Native> {
+        let (vectors, is_ordered) = (instructions.native?, instructions.is_ordered);
+        let code = &self.native[vectors.index()][usize::from(is_ordered)];
+        code.get_or_init(|| Native::translate(self, vectors, is_ordered)).as_ref()
     }
 
     /// Number of outputs.
@@ -177,9 +179,7 @@ impl LaneTape {
 impl LaneTape {
     /// Makes the machine code that evaluators of these instructions want, if there is any: copies made from then on share it.
     pub fn translate(&self, instructions: InstructionSet) {
-        if let Some(vectors) = instructions.native {
-            self.native(vectors);
-        }
+        self.native(instructions);
     }
 
     /// The same tape with other numbers for its settings; machine code that was made is shared.

@@ -49,6 +49,22 @@ impl Step {
             Step::Select { mask, set, clear } => [Some(mask), Some(set), Some(clear)],
         }
     }
+
+    /// The same step on other values.
+    pub(super) fn with_operands(self, other: impl Fn(Value) -> Value) -> Step {
+        match self {
+            Step::Input(_) | Step::Scalar(_) => self,
+            Step::Packed(op, a, b) => Step::Packed(op, other(a), other(b)),
+            Step::SquareRoot(a) => Step::SquareRoot(other(a)),
+            Step::Unordered(a, b) => Step::Unordered(other(a), other(b)),
+            Step::Shift(a, by) => Step::Shift(other(a), by),
+            Step::Select { mask, set, clear } => {
+                Step::Select { mask: other(mask), set: other(set), clear: other(clear) }
+            }
+            Step::Call(number, a, b) => Step::Call(number, other(a), other(b)),
+            Step::Store(target, a) => Step::Store(target, other(a)),
+        }
+    }
 }
 
 /// An operation that is a function of the program.

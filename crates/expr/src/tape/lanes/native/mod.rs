@@ -1,21 +1,25 @@
 //! Tapes as machine code on x86-64: four lanes at a time (AVX2) or eight (AVX-512), registers instead of blocks.
 //!
-//! The code does what the instructions of the tape say, in their order, so its results have the same bits. Where an angle is
+//! The code does what the instructions of the tape say, so its results have the same bits, in whatever order that needs. Where an angle is
 //! too large for the short reduction it says so, and the tape runs again, instruction by instruction. This module
 //! holds all unsafe code of the project: to enter code that was made at run time, and to be called by it. Memory is written
 //! first and executable then, never both.
 
 mod encode;
+mod loops;
 mod lower;
 mod registers;
+mod schedule;
 
 use std::sync::Arc;
 
 use memmap2::{Mmap, MmapMut};
 use pulp::Arch;
 
+pub(super) use self::loops::EightLanes;
 use self::lower::{Call, Lowered, Target, lower};
 use self::registers::{OPERANDS, RESULT, assemble};
+use self::schedule::ordered;
 use super::block::{Block, LANES};
 use super::program::LaneTape;
 use crate::symbolic::op::Unary;
@@ -108,21 +112,27 @@ pub(super) enum Part {
 }
 
 impl Native {
-    /// None where the machine forbids such memory, and for tapes too long for it.
-    pub(super) fn translate(tape: &LaneTape, vectors: Vectors) -> Option<Native> {
+    /// None where the machine forbids such memory, and for tapes too long for it. What is ordered does the steps of a tape in the order in
+    /// which they wait least.
+    pub(super) fn translate(tape: &LaneTape, vectors: Vectors, is_ordered: bool) -> Option<Native> {
         if tape.by_lane.len() + tape.each.len() > MOST_INSTRUCTIONS {
             return None;
         }
         let angles = tape.block_count + tape.outputs.len();
         let kept = tape.kept.iter().map(|block| (*block, Target::Block(*block)));
-        let kept = lower(tape, &tape.by_lane, kept, angles as u32, Vec::new());
+        let mut kept = lower(tape, &tape.by_lane, kept, angles as u32, Vec::new());
         let outputs = tape.outputs.iter().enumerate().map(|(k, block)| {
             let is_written = k < tape.written;
             let target =
                 if is_written { Target::Output(k as u32) } else { Target::Block((tape.block_count + k) as u32) };
             (*block, target)
         });
-        let each = lower(tape, &tape.each, outputs, angles as u32, kept.constants.clone());
+        let mut each = lower(tape, &tape.each, outputs, angles as u32, kept.constants.clone());
+        if is_ordered {
+            for part in [&mut kept, &mut each] {
+                part.steps = ordered(std::mem::take(&mut part.steps), vectors);
+            }
+        }
         let assembled = |lowered: &Lowered| {
             let addresses: Vec<usize> = lowered.calls.iter().map(|call| std::ptr::from_ref(call).addr()).collect();
             let function = match vectors {
