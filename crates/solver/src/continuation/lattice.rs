@@ -9,8 +9,12 @@ use flank_expr::LANES;
 
 use crate::continuation::field::{Field, SAME_DETERMINANT};
 use crate::continuation::grid::{ASTRAY, Grid};
+use crate::continuation::path::dips;
 use crate::equations::solution::{NEAR, Range};
 use crate::newton::batch::{LaneNewton, Lanes};
+
+/// Newton's step from where the middle of a leap is expected is no longer than this share of the leap, and [`NEAR`] of the ranges.
+const OFF_HALFWAY: f64 = 0.125;
 
 /// Which points beside each other are steps apart.
 #[derive(Clone, Copy, PartialEq)]
@@ -95,13 +99,54 @@ impl Grid<'_> {
         let back = self.along_tangents(newton, count, &ends);
         let pairs = [(&starts, &ends), (&starts, &led), (&led, &ends), (&ends, &back), (&back, &starts)];
         let [whole, there, beside_end, returned, beside_start] = pairs.map(|(a, b)| self.distances(a, b));
+        let is_broken = self.is_broken_halfway(field, newton, (leaps, &whole), [&starts[..], &led, &ends, &back]);
         for (lane, leap) in leaps.iter().enumerate() {
             let leads = |tangent: &Lanes, beside: &Lanes| beside[lane] <= ASTRAY * tangent[lane] + NEAR;
-            let stays = whole[lane] <= NEAR || leads(&there, &beside_end) && leads(&returned, &beside_start);
+            let stays = whole[lane] <= NEAR
+                || leads(&there, &beside_end) && leads(&returned, &beside_start) && !is_broken[lane];
             if field.is_root(leap.to) && !stays {
                 field.forget(leap.to);
             }
         }
+    }
+
+    /// Whether each leap may lead to another sheet: halfway, on the cubic with the tangents at both ends, lies no root of one sheet. Either
+    /// Newton's step leads away from there, as above a hole, or the determinant [`dips`].
+    fn is_broken_halfway(
+        &mut self,
+        field: &Field,
+        newton: &mut LaneNewton<'_>,
+        (leaps, whole): (&[Leap], &Lanes),
+        [starts, led, ends, back]: [&[Lanes]; 4],
+    ) -> [bool; LANES] {
+        let size = self.ranges.len();
+        for k in 0..size {
+            let (start, led, end, back) = (&starts[k], &led[k], &ends[k], &back[k]);
+            *newton.input(k) = array::from_fn(|lane| {
+                let bend = (led[lane] - start[lane]) + (back[lane] - end[lane]);
+                0.5 * (start[lane] + end[lane]) + 0.125 * bend
+            });
+        }
+        for (lane, leap) in leaps.iter().enumerate() {
+            let [from, to] = [leap.from, leap.to].map(|point| self.targets[point]);
+            (0..2).for_each(|k| newton.input(size + k)[lane] = 0.5 * (from[k] + to[k]));
+        }
+        let mut step = [0.0; LANES];
+        for steps in newton.tangents(leaps.len()) {
+            for lane in 0..leaps.len() {
+                // where there is no clear tangent none of them is a number
+                step[lane] = if steps[lane].abs() <= step[lane] { step[lane] } else { steps[lane].abs() };
+            }
+        }
+        self.effort.evaluations += leaps.len() as u64;
+        let halfway = *newton.determinant();
+        let mut is_broken = [false; LANES];
+        for (lane, leap) in leaps.iter().enumerate() {
+            let mean = 0.5 * (field.determinant(leap.from) + field.determinant(leap.to));
+            let is_near = step[lane] <= OFF_HALFWAY * whole[lane] + NEAR;
+            is_broken[lane] = !is_near || dips(mean, halfway[lane]);
+        }
+        is_broken
     }
 
     /// The unknowns of points, a lane for each.

@@ -22,6 +22,10 @@ const MOST_TRIES: usize = 48;
 /// Between the ends of a step the determinant is what a straight line says, but for this share of it. Where two branches cross, it
 /// falls to zero and rises again: of a step across, however short, it lies lower.
 const OFF_MEAN: f64 = 0.25;
+/// Where a sheet ends on a pole of the tool, the determinant falls to zero and rises again with its sign on the sheet behind. Of two ends so
+/// much alike that a step may count, less than this share of their mean is left halfway then; beside ends on one sheet, less than this share
+/// of the smaller one hardly ever.
+const LEAST_BETWEEN: f64 = 0.7;
 
 /// A way between two pairs of targets along the branch of a root, told residuals and Jacobian where it asks for them: many ways can
 /// be followed at once.
@@ -283,4 +287,17 @@ fn goes_on(descent: &mut Descent<'_>, at: &impl Linearized) -> bool {
 pub(crate) fn is_between([before, behind]: [f64; 2], share: f64, between: f64) -> bool {
     let mean = before + share * (behind - before);
     (before * behind > 0.0) & ((between - mean).abs() <= OFF_MEAN * mean.abs())
+}
+
+/// Whether a determinant falls so far below two others that another sheet may begin between them: `below` their mean, or the smaller one. One
+/// that is no number does not.
+#[inline(always)]
+pub(crate) fn dips(below: f64, between: f64) -> bool {
+    between / below < LEAST_BETWEEN
+}
+
+/// The one nearer to zero.
+#[inline(always)]
+pub(crate) fn smaller([before, behind]: [f64; 2]) -> f64 {
+    if before.abs() < behind.abs() { before } else { behind }
 }

@@ -9,7 +9,7 @@ use flank_expr::LANES;
 use super::strip::{Strip, determinant_between, is_astray};
 use super::{Field, block_of, take};
 use crate::continuation::line::{divided_difference, stencil};
-use crate::continuation::path::is_between;
+use crate::continuation::path::{dips, is_between, smaller};
 use crate::equations::solution::Range;
 use crate::newton::batch::{LaneNewton, Lanes};
 
@@ -163,7 +163,10 @@ impl Strip<'_> {
                     let smooth = along.sums(&between, k, shape.size);
                     for lane in 0..width {
                         let keeps_sign = expected[lane] * smooth[lane] > 0.0;
-                        stays[lane] |= keeps_sign && is_between([smooth[lane]; 2], 0.0, found[lane]);
+                        let ends = along.beside(&between, lane, k, shape.size);
+                        stays[lane] |= keeps_sign
+                            && is_between([smooth[lane]; 2], 0.0, found[lane])
+                            && !dips(smaller(ends), found[lane]);
                     }
                 }
             }

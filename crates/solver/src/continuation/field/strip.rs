@@ -6,7 +6,7 @@ use flank_expr::LANES;
 
 use super::{Along, Mark, SAME_DETERMINANT, Shape, block_of, number, take};
 use crate::continuation::line::{Midpoint, STENCIL};
-use crate::continuation::path::is_between;
+use crate::continuation::path::{dips, is_between, smaller};
 use crate::equations::solution::NEAR;
 use crate::equations::solution::Range;
 use crate::newton::batch::{LaneNewton, Lanes};
@@ -265,6 +265,7 @@ impl Strip<'_> {
                 stays[lane] |= before[lane] * behind[lane] > 0.0
                     && before[lane] * expected[lane] > 0.0
                     && is_between([expected[lane]; 2], 0.0, found[lane])
+                    && !dips(smaller([before[lane], behind[lane]]), found[lane])
                     && is_known();
             }
         }
