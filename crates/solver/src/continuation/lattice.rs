@@ -33,8 +33,8 @@ struct Leap {
 
 impl Grid<'_> {
     /// From solved points to those of the lattice of some rows and columns, in waves: along the tangent, then by Newton. A
-    /// step counts only if it passes the test of the careful path in `stays_near` and the determinant hardly changes. Gives
-    /// the solved points beside those that are left for that path.
+    /// step counts only if tangents lead from each end to the other one, the determinant hardly changes, and halfway lies a root of the
+    /// same sheet. Gives the solved points beside those that are left for the careful path.
     pub(crate) fn spread_in_lanes(
         &mut self,
         field: &mut Field,
