@@ -206,3 +206,18 @@ fn bands_beyond_the_ranges_have_the_bits_of_the_whole() {
         assert_eq!(point.outcome == Outcome::Solved, a - 0.1 * (3.0 * b).sin() <= 1.0, "{a} {b}: {point:?}");
     }
 }
+
+/// A branch that does not qualify in the middle is met again at every other point that is tried: it is followed once.
+#[test]
+fn a_branch_that_does_not_qualify_is_followed_once() {
+    let graph = Graph::new();
+    let ranges = [range(-1.0, 1.0), range(0.0, 1.0)];
+    let keep = Some((0, range(20.0, 21.0)));
+    let problem = plane(&graph, |u, v| [u + 0.2 * u * u * u, v + 0.3 * u * v], ranges, keep);
+    let counts = [24, 25];
+    let targets = grid(counts, [range(-0.9, 0.9), range(0.3, 0.6)]);
+    let (points, effort) = problem.solve(&targets, counts);
+    assert!(points.iter().all(|point| point.outcome != Outcome::Solved), "none is kept");
+    // some hundred points are tried, and to follow the branch takes more than one evaluation a point
+    assert!(effort.evaluations < 40 * targets.len() as u64, "{}", effort.evaluations);
+}

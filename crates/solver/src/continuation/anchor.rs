@@ -32,6 +32,9 @@ const TURNS: i32 = 2;
 
 /// Branches that are followed to see where they run, if several qualify.
 const MOST_COURSES: usize = 8;
+/// Branches that did not qualify and are known again at further points: the last ones, of grids that are no larger than this.
+const MOST_KNOWN: usize = 8;
+const MOST_KNOWN_POINTS: usize = 65_536;
 
 /// A grid as far as its branch can be followed from where it is found.
 pub(crate) fn follow_alone(
@@ -173,13 +176,15 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
         let found = ahead.roots(choice, ranges, grid.targets, &points[number..]);
         let target = grid.targets[point];
         for root in branches_of(found, grid, target, choice) {
-            let (field, inside) = follower.follow(point, &root, (ranges, choice.periodic));
+            let (field, inside) = follower.follow_once(point, &root, (ranges, choice.periodic));
             let at_middle: Vec<f64> = field.unknowns(middle).collect();
             let has_middle = field.is_root(middle);
             let at = if has_middle { back_into(ranges, choice.periodic, &at_middle) } else { root.unknowns.clone() };
             if choice.keeps(&at) {
                 leads.add(root, field, inside);
                 leads_to_middle &= has_middle;
+            } else if field.len() <= MOST_KNOWN_POINTS {
+                follower.known.push_back((field, inside));
             }
         }
         if !leads.roots.is_empty() {
@@ -228,12 +233,29 @@ impl Ahead {
 struct Follower<'s> {
     grid: Grid<'s>,
     solvers: Solvers<'s>,
+    /// What was followed from earlier points and did not qualify.
+    known: VecDeque<(Field, usize)>,
 }
 
 impl<'s> Follower<'s> {
     fn new(grid: &Grid<'s>, reach: Option<&'s Reach>) -> Follower<'s> {
         let ranges = reach.map_or(grid.ranges, |reach| &reach.ranges);
-        Follower { grid: grid.within(ranges), solvers: Solvers::new(grid.system, ranges) }
+        Follower { grid: grid.within(ranges), solvers: Solvers::new(grid.system, ranges), known: VecDeque::new() }
+    }
+
+    /// What [`Follower::follow`] gives, of a branch that is known without the work of following it once more.
+    fn follow_once(&mut self, from: usize, root: &Solution, within: (&[Range], &[bool])) -> (Field, usize) {
+        let is_on = |field: &Field| {
+            let own: Vec<f64> = field.unknowns(from).collect();
+            field.is_root(from) && is_same_root(&root.unknowns, &own, within.0, within.1)
+        };
+        if let Some(number) = self.known.iter().position(|(field, _)| is_on(field)) {
+            return self.known.remove(number).expect("it was found there");
+        }
+        if self.known.len() == MOST_KNOWN {
+            self.known.pop_front();
+        }
+        self.follow(from, root, within)
     }
 
     /// Everything that can be reached from a point, and how much of it lies within ranges.
