@@ -151,12 +151,19 @@ pub(crate) fn measure<'j, 'g>(
     let apart = done.is_none().then(|| apart([surface, from], ends));
     let ambiguous: Vec<NotDone> = lost.into_iter().chain(lost_near).collect();
     let is_cut = |(point, near): &(&SurfacePoint, &SurfacePoint)| is_solved(point) && is_cut_away(near.outcome);
+    let is_not_found = |(point, near): &(&SurfacePoint, &SurfacePoint)| {
+        is_solved(point) && matches!(near.outcome, Outcome::NotConverged { .. } | Outcome::Singular)
+    };
     Ok(DeviationMap {
         held: ComparedWith::Surface(surface),
         from,
         labels: sample.labels.clone(),
         counts,
         cut_away: points.iter().zip(&near).filter(is_cut).count(),
+        not_found: (
+            points.iter().zip(&near).filter(is_not_found).count(),
+            starts.coordinates.each_ref().map(|coordinate| coordinate.name.clone()),
+        ),
         points,
         motion,
         is_moved: !no_align,

@@ -40,5 +40,6 @@ pub(crate) fn inspect<'j, 'g>(
         is_opposite: false,
         refused: Vec::new(),
         cut_away: 0,
+        not_found: Default::default(),
     })
 }

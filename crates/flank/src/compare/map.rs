@@ -88,6 +88,8 @@ pub(crate) struct DeviationMap<'j, 'g> {
     pub(crate) refused: Vec<NotDone>,
     /// Points at whose places the surface is cut away.
     pub(crate) cut_away: usize,
+    /// Points at whose places the surface was not found, and the two coordinates by which it was looked for there.
+    pub(crate) not_found: (usize, [String; 2]),
 }
 
 /// A surface by its name, with that of its job where several have it.
@@ -259,6 +261,9 @@ impl DeviationMap<'_, '_> {
         let unmet = all - known - unsolved;
         let cut_away = self.cut_away.min(unmet);
         let unmet = unmet - cut_away;
+        let (not_found, [first, second]) = &self.not_found;
+        let not_found = (*not_found).min(unmet);
+        let unmet = unmet - not_found;
         counted([
             (unsolved, not_solved(&from, format!("not solved: {unsolved} of {all} points of {from}"))),
             (
@@ -266,6 +271,16 @@ impl DeviationMap<'_, '_> {
                 no_deviation(
                     &surface,
                     format!("no deviation at {cut_away} of {all} points: {surface} is cut away there"),
+                ),
+            ),
+            (
+                not_found,
+                no_deviation(
+                    &from,
+                    format!(
+                        "no deviation at {not_found} of {all} points: {surface}, looked for by {first} and {second}, was not found there; \
+                         sample {from} by two of x, y, z, rho and polar_angle that tell its points apart"
+                    ),
                 ),
             ),
             (

@@ -69,13 +69,15 @@ fn solved(points: &[SurfacePoint]) -> impl Iterator<Item = &SurfacePoint> {
     points.iter().filter(|point| point.outcome == Outcome::Solved)
 }
 
-/// The two of radius, angle and height, of a rack of x, y and z, of which the points' normals have least.
+/// The two of radius, angle and height, of a rack of x, y and z, of which the points' normals have least. Where the normals lean to both sides of
+/// the radius, as on a lobe or a whole cam, the same radius and height come twice: angle and height tell those points apart.
 fn telling(points: &[SurfacePoint], alignment: Alignment) -> [&'static str; 2] {
     let [out, along] = match alignment {
         Alignment::Turn => ["rho", "polar_angle"],
         Alignment::Shift => ["x", "y"],
     };
     let mut sums = [0.0; 3];
+    let mut ends = [[0.0_f64; 2]; 3];
     for SurfacePoint { position: [x, y, _], normal: [nx, ny, nz], .. } in solved(points) {
         let radius = x.hypot(*y).max(f64::MIN_POSITIVE);
         let parts = match alignment {
@@ -83,10 +85,12 @@ fn telling(points: &[SurfacePoint], alignment: Alignment) -> [&'static str; 2] {
             Alignment::Shift => [*nx, *ny, *nz],
         };
         sums.iter_mut().zip(parts).for_each(|(sum, part)| *sum += part.abs());
+        ends.iter_mut().zip(parts).for_each(|([low, high], part)| (*low, *high) = (low.min(part), high.max(part)));
     }
     let [radial, tangential, axial] = sums;
+    let [turns_over, leans_both_ways, _] = ends.map(|[low, high]| low < -HARDLY && high > HARDLY);
     if tangential >= HARDLY * radial.max(axial) {
-        [out, "z"]
+        if leans_both_ways && !turns_over { [along, "z"] } else { [out, "z"] }
     } else if radial >= axial {
         [along, "z"]
     } else {
