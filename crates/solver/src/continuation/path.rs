@@ -293,7 +293,7 @@ pub(crate) fn is_between([before, behind]: [f64; 2], share: f64, between: f64) -
 /// that is no number does not.
 #[inline(always)]
 pub(crate) fn dips(below: f64, between: f64) -> bool {
-    between / below < LEAST_BETWEEN
+    between * below < LEAST_BETWEEN * below * below
 }
 
 /// The one nearer to zero.

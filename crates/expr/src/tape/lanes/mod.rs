@@ -46,7 +46,7 @@ impl InstructionSet {
         InstructionSet { native: Vectors::available().last(), ..InstructionSet::widest() }
     }
 
-    /// The same with the steps of machine code in an order that waits less: worth its while for many points, 0.1 ms or more for each tape.
+    /// The same with the steps of machine code in an order that waits less: worth its while for many points; a tape of 600 steps takes some 0.3 ms.
     #[must_use]
     pub fn for_many(self) -> InstructionSet {
         InstructionSet { is_ordered: self.native.is_some(), ..self }
