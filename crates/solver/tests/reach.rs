@@ -221,3 +221,18 @@ fn a_branch_that_does_not_qualify_is_followed_once() {
     // some hundred points are tried, and to follow the branch takes more than one evaluation a point
     assert!(effort.evaluations < 40 * targets.len() as u64, "{}", effort.evaluations);
 }
+
+/// Of more branches than are known again none qualifies: the search for another one ends before all points have been tried.
+#[test]
+fn branches_that_do_not_qualify_are_not_followed_without_end() {
+    let graph = Graph::new();
+    let ranges = [range(-1.0, 1.0), range(0.0, 1.0)];
+    let problem = plane(&graph, |u, v| [(40.0 * u).sin(), v + 0.3 * u * v], ranges, Some((0, range(20.0, 21.0))));
+    let counts = [24, 25];
+    let targets = grid(counts, [range(-0.9, 0.9), range(0.35, 0.6)]);
+    let (points, effort) = problem.solve(&targets, counts);
+    assert!(points.iter().all(|point| point.outcome != Outcome::Solved), "none is kept");
+    assert!(effort.is_given_up, "and it is told that not all was looked at");
+    // the last one may take more than what is left
+    assert!(effort.evaluations < 100_000 + 200 * targets.len() as u64, "{}", effort.evaluations);
+}

@@ -23,6 +23,8 @@ use crate::roots::Roots;
 
 /// Points that are tried beside the middle.
 const MOST_ANCHORS: usize = 256;
+/// Evaluations that branches may take to be followed from such points, and more of them for each point of the grid.
+const MOST_FOLLOWED: [u64; 2] = [100_000, 100];
 /// Where the branch that is meant is looked for first, as shares of the way across the grid.
 const MIDDLE: [f64; 2] = [0.5; 2];
 /// Points of a branch that tell where it runs, about.
@@ -166,8 +168,10 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
     let mut follower = Follower::new(grid, choice.reach);
     let points: Vec<usize> = anchors([grid.rows, grid.columns]).filter(|point| *point != middle).collect();
     let mut ahead = Ahead::default();
+    let most_followed = MOST_FOLLOWED[0] + MOST_FOLLOWED[1] * grid.targets.len() as u64;
+    let is_too_much = |follower: &Follower<'_>| follower.grid.effort.evaluations >= most_followed;
     for (number, point) in points.iter().copied().enumerate() {
-        if grid.effort.boxes >= choice.most_boxes || number == MOST_ANCHORS {
+        if grid.effort.boxes >= choice.most_boxes || number == MOST_ANCHORS || is_too_much(&follower) {
             grid.effort.is_given_up = true;
             break;
         }
@@ -176,6 +180,10 @@ fn begin_elsewhere(grid: &mut Grid<'_>, choice: &Choice<'_>) -> Option<Beginning
         let found = ahead.roots(choice, ranges, grid.targets, &points[number..]);
         let target = grid.targets[point];
         for root in branches_of(found, grid, target, choice) {
+            if leads.roots.is_empty() && is_too_much(&follower) {
+                grid.effort.is_given_up = true;
+                break;
+            }
             let (field, inside) = follower.follow_once(point, &root, (ranges, choice.periodic));
             let at_middle: Vec<f64> = field.unknowns(middle).collect();
             let has_middle = field.is_root(middle);
