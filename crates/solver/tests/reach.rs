@@ -233,6 +233,7 @@ fn branches_that_do_not_qualify_are_not_followed_without_end() {
     let (points, effort) = problem.solve(&targets, counts);
     assert!(points.iter().all(|point| point.outcome != Outcome::Solved), "none is kept");
     assert!(effort.is_given_up, "and it is told that not all was looked at");
-    // the last one may take more than what is left
-    assert!(effort.evaluations < 100_000 + 200 * targets.len() as u64, "{}", effort.evaluations);
+    // 125 branches are followed from the middle, as far as they lead beyond the ranges, with some 2,700 evaluations each; elsewhere as many as
+    // are allowed, where all of them again from each of 256 points would take 80,000,000
+    assert!(effort.evaluations < 600_000, "{}", effort.evaluations);
 }
