@@ -36,10 +36,37 @@ job cam {{
     )
 }
 
-fn compared(ends: &str, surface: &str) -> DeviationResult {
+/// A pin that stands beside the axis, sampled by the angle about its own middle, and a thinner one.
+const PIN: &str = "machine table {
+    axis C : rotary
+    frame bed
+    frame seat in bed = translate_x(20 mm)
+    frame work in bed = rotate_z(C)
+}
+tool roller {
+    param radius : length = 8 mm
+    surface side(u: angle in -180 deg .. 180 deg, v: length in -10 mm .. 10 mm) {
+        at = [radius * cos(u), radius * sin(u), v]
+        body inside
+    }
+}
+job pin {
+    machine m = table
+    tool r = roller
+    tool thin = r(radius: 7.5 mm)
+    mount r, thin on m.seat
+    drive m.C = 0 deg
+    surface one, other in m.work = move(r.side, thin.side)
+    sample one { u: 10 deg .. 170 deg by 34, v: -5 mm .. 5 mm by 3 }
+    sample other { u: 60 deg .. 120 deg by 5, v: -5 mm .. 5 mm by 3
+        keep u: 0 deg .. 180 deg }
+}
+";
+
+fn compared(text: &str, surface: &str) -> DeviationResult {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("cam.chain");
-    std::fs::write(&file, cam(ends)).expect("the folder is there");
+    std::fs::write(&file, text).expect("the folder is there");
     let project = Project::open(Path::new(&file), Arc::new(Disk));
     let request = DeviationRequest {
         jobs: JobSelection { project, job: None, set: Vec::new() },
@@ -63,12 +90,27 @@ fn compared(ends: &str, surface: &str) -> DeviationResult {
 #[test]
 fn cams_and_lobes_are_compared_all_around() {
     for ends in ["-170 deg .. 170 deg", "-60 deg .. 60 deg"] {
-        let same = compared(ends, "other");
+        let same = compared(&cam(ends), "other");
         assert_eq!((same.known, same.asked, same.not_done.len()), (105, 105, 0), "{ends}: {:?}", same.not_done);
         assert!(same.rms_um.is_some_and(|off| off < 1e-6), "{ends}: {:?}", same.rms_um);
-        let larger = compared(ends, "larger");
+        let larger = compared(&cam(ends), "larger");
         let ends_um = [larger.lowest_um, larger.highest_um].map(Option::unwrap_or_default);
         assert_eq!(larger.known, 105, "{ends}: {:?}", larger.not_done);
         assert!(ends_um.iter().all(|off| (off - 500.0).abs() < 1e-6), "{ends}: {ends_um:?}");
     }
+}
+
+/// The normals of the pin point everywhere. Beyond the radii that the thinner one has, it is not found, which is told with the way out.
+#[test]
+fn a_surface_that_is_not_found_is_told_so() {
+    let thinner = compared(PIN, "other");
+    let told: Vec<&str> = thinner.not_done.iter().map(|one| one.message.as_str()).collect();
+    let [told] = told.as_slice() else { panic!("{told:?}") };
+    assert_eq!((thinner.known, thinner.asked), (87, 102), "{told}");
+    assert!(
+        told.starts_with("no deviation at 15 of 102 points: other, looked for by rho and z, was not found there;"),
+        "{told}"
+    );
+    let ends = [thinner.lowest_um, thinner.highest_um].map(Option::unwrap_or_default);
+    assert!(ends.iter().all(|off| (off + 500.0).abs() < 1e-6), "{ends:?}");
 }

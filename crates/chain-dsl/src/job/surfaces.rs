@@ -430,8 +430,8 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// All pieces of a surface by the run along the profile that they come from: each has the values that lie on it.
-    /// Samples the pieces of a profile; those with a sample of their own are left to it.
+    /// All pieces of a surface by the run along the profile that they come from: each has the values that lie on it. One with a sample of its
+    /// own takes no part.
     fn sample_profile(
         &mut self,
         context: &mut Context<'g>,

@@ -2,8 +2,8 @@
 //!
 //! The code does what the instructions of the tape say, so its results have the same bits, in whatever order that needs. Where an angle is
 //! too large for the short reduction it says so, and the tape runs again, instruction by instruction. This module
-//! holds all unsafe code of the project: to enter code that was made at run time, and to be called by it. Memory is written
-//! first and executable then, never both.
+//! holds all unsafe code of the libraries: to enter code that was made at run time, to be called by it, and to run loops of the compiler on
+//! AVX-512. Memory is written first and executable then, never both.
 
 mod encode;
 mod loops;
