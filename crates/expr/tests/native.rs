@@ -69,11 +69,17 @@ fn outputs_go_to_memory_of_the_caller() {
                 *evaluator.input(0) = values(0.7);
                 *evaluator.input(1) = values(scale);
             }
-            let mut out = [[f64::NAN; LANES]; 4];
             expected.run();
-            found.run_into(LANES, &mut out);
-            (0..4).for_each(|k| assert_eq!(expected.output(k), &out[k], "{instructions:?}"));
-            assert_eq!(expected.output(4), found.output(4));
+            // at a line of the caches, and beside it
+            for beside in [0, 1] {
+                let mut memory = [f64::NAN; 6 * LANES];
+                let first = memory.as_ptr().align_offset(64) + beside;
+                found.run_into(LANES, memory[first..].as_chunks_mut().0.split_at_mut(4).0);
+                instructions.settle();
+                let out = memory[first..].as_chunks().0;
+                (0..4).for_each(|k| assert_eq!(expected.output(k), &out[k], "{instructions:?}"));
+                assert_eq!(expected.output(4), found.output(4));
+            }
         }
     }
 }

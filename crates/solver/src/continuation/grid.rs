@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-use flank_expr::LANES;
+use flank_expr::{InstructionSet, LANES};
 use rayon::prelude::*;
 
 use crate::Outcome;
@@ -11,7 +11,7 @@ use crate::continuation::field::{Along, Field, Lines, Strip};
 use crate::continuation::lattice::Ways;
 use crate::continuation::line::{Midpoint, denser, divided_difference, lattice, levels};
 use crate::equations::solution::{Range, Solution};
-use crate::equations::system::{Evaluation, System};
+use crate::equations::system::{Evaluation, READ_AGAIN, System, WRITTEN_ONCE};
 use crate::newton::batch::LaneNewton;
 use crate::newton::lines::OnLine;
 use crate::newton::scalar::{LONGEST_STEP, solve_with};
@@ -285,7 +285,7 @@ impl<'s> Grid<'s> {
     /// All lines whose points are given by their targets, from those that are known at some places.
     pub(crate) fn compute_strips(&mut self, field: &mut Field, lines: &[usize], places: &[usize]) {
         let (system, ranges, targets) = (self.system, self.ranges, self.targets);
-        let instructions = system.instructions_on(targets.len());
+        let instructions = system.instructions_on(targets.len(), WRITTEN_ONCE);
         let new = || OnLine::new(system, ranges, instructions);
         let mut on_line = new();
         let known = field.known_lines(lines, places);
@@ -300,7 +300,7 @@ impl<'s> Grid<'s> {
         let compute = |on_line: &mut Option<OnLine<'s>>, mut strip: Strip<'_>| {
             on_line.as_mut().map_or(0, |on_line| strip.compute(on_line, &known, &prepared, targets))
         };
-        self.effort.evaluations += self.on_strips(field, &mut on_line, new, compute);
+        self.effort.evaluations += self.on_strips(field, instructions, (&mut on_line, new), compute);
     }
 
     /// All lines, from those that are known, or known at some places.
@@ -312,12 +312,12 @@ impl<'s> Grid<'s> {
         levels: &[Vec<Midpoint>],
     ) {
         let targets = self.targets;
-        let instructions = self.system.instructions_on(targets.len());
+        let instructions = self.system.instructions_on(targets.len(), READ_AGAIN);
         let another = solvers.another(instructions);
         let mut for_many = instructions.is_for_many().then(&another);
         let newton = for_many.as_mut().unwrap_or_else(|| solvers.newton());
         let refine = |newton: &mut LaneNewton<'_>, mut strip: Strip<'_>| strip.refine(newton, along, levels, targets);
-        self.effort.evaluations += self.on_strips(field, newton, another, refine);
+        self.effort.evaluations += self.on_strips(field, instructions, (newton, another), refine);
     }
 
     /// Whether it is work for several threads.
@@ -325,15 +325,21 @@ impl<'s> Grid<'s> {
         self.targets.len() >= SHARED && rayon::current_num_threads() > 1
     }
 
-    /// Work on each strip, one after the other on as many threads as there are; further ones have tools of their own.
+    /// Work with these instructions on each strip, one after the other on as many threads as there are; further ones have tools of their
+    /// own.
     fn on_strips<T>(
         &self,
         field: &mut Field,
-        tool: &mut T,
-        new: impl Fn() -> T + Sync + Send,
+        instructions: InstructionSet,
+        (tool, new): (&mut T, impl Fn() -> T + Sync + Send),
         work: impl Fn(&mut T, Strip<'_>) -> u64 + Sync + Send,
     ) -> u64 {
         let strips = field.strips();
+        let work = |tool: &mut T, strip: Strip<'_>| {
+            let evaluations = work(tool, strip);
+            instructions.settle();
+            evaluations
+        };
         if !self.is_shared() {
             return strips.into_iter().map(|strip| work(tool, strip)).sum();
         }

@@ -15,6 +15,10 @@ const BEFORE_TRANSLATED: u64 = 64;
 /// Points in grids that a system has been solved at before its machine code is laid out in an order that waits less. That takes some
 /// 0.3 ms for a tape of 600 steps, and saves 1 to 2 ns a point.
 const BEFORE_ORDERED: u64 = 100_000;
+/// Bytes of a grid's numbers from which on machine code writes them past the caches. Those that are not read again in between: more than
+/// a core has for itself. Those from which others are predicted soon: more than is left of a cache that cores share.
+pub(crate) const WRITTEN_ONCE: usize = 8 << 20;
+pub(crate) const READ_AGAIN: usize = 20 << 20;
 
 /// As many equations as unknowns, with parameters that are given for each solution.
 #[derive(Clone, Debug)]
@@ -212,10 +216,17 @@ impl System {
         self.instructions
     }
 
-    /// The instructions for the strips of a grid with so many points.
-    pub(crate) fn instructions_on(&self, points: usize) -> InstructionSet {
+    /// The instructions for the strips of a grid with so many points, whose numbers go past the caches from so many bytes on.
+    pub(crate) fn instructions_on(&self, points: usize, past_caches: usize) -> InstructionSet {
         self.in_grids.add(points as u64);
-        if self.in_grids.get() >= BEFORE_ORDERED { self.instructions.for_many() } else { self.instructions }
+        // unknowns, determinant and residual, and what else is wanted
+        if points * (self.size + 2 + self.extra_count) * size_of::<f64>() >= past_caches {
+            self.instructions.past_caches()
+        } else if self.in_grids.get() >= BEFORE_ORDERED {
+            self.instructions.for_many()
+        } else {
+            self.instructions
+        }
     }
 
     pub(crate) fn condition_count(&self) -> usize {
@@ -405,10 +416,10 @@ mod tests {
         let system = System::new(&[x.sin() - c], &[x], &[c]).expect("nothing is unbound");
         let has_code = system.instructions().machine_code().is_some();
         let half = BEFORE_ORDERED as usize / 2;
-        assert!(!system.instructions_on(half).is_for_many());
-        assert_eq!(system.instructions_on(half).is_for_many(), has_code);
+        assert!(!system.instructions_on(half, READ_AGAIN).is_for_many());
+        assert_eq!(system.instructions_on(half, READ_AGAIN).is_for_many(), has_code);
         // cases of other settings have their points counted on
-        assert_eq!(system.with_settings(&[]).instructions_on(1).is_for_many(), has_code);
-        assert!(!system.with_instruction_set(InstructionSet::widest()).instructions_on(1).is_for_many());
+        assert_eq!(system.with_settings(&[]).instructions_on(1, READ_AGAIN).is_for_many(), has_code);
+        assert!(!system.with_instruction_set(InstructionSet::widest()).instructions_on(1, READ_AGAIN).is_for_many());
     }
 }

@@ -60,6 +60,7 @@ impl<'s> Expected<'s> {
 /// What computes such lines.
 pub(crate) struct OnLine<'s> {
     evaluator: LaneEvaluator<'s>,
+    instructions: InstructionSet,
     size: usize,
     /// The sign of the determinants around there.
     side: f64,
@@ -76,14 +77,18 @@ impl<'s> OnLine<'s> {
                 evaluator.set_uniform(size + 2 + kind * size + k, value);
             }
         }
-        Some(OnLine { evaluator, size, side: 0.0 })
+        Some(OnLine { evaluator, instructions, size, side: 0.0 })
     }
 
     /// What follows from the first target of a line, if it is the same on all of the line, and the second ones are those of another.
     pub(crate) fn prepared(&mut self, line: &[[f64; 2]], other: &[[f64; 2]]) -> Option<Vec<f64>> {
         let first = line.first()?[0];
         let differs = |(target, other): (&[f64; 2], &[f64; 2])| (target[0] != first) | (target[1] != other[1]);
-        if line.iter().zip(other).map(differs).fold(false, |any, differs| any | differs) {
+        let is_other = self.instructions.dispatch(
+            #[inline(always)]
+            || line.iter().zip(other).map(differs).fold(false, |any, differs| any | differs),
+        );
+        if is_other {
             return None;
         }
         let mut prepared = Vec::new();

@@ -13,7 +13,7 @@ use pulp::Arch;
 use crate::tape::evaluate::execute;
 use block::Block;
 pub use block::LANES;
-use native::{EightLanes, Native, Part, Vectors, Wide};
+use native::{EightLanes, Native, Part, Vectors, Wide, settle};
 use program::LaneInstruction;
 pub use program::{LaneTape, Varies};
 
@@ -23,8 +23,28 @@ pub struct InstructionSet {
     loops: Loops,
     /// Tapes become machine code for these.
     native: Option<Vectors>,
-    /// Whether that is laid out for many points.
-    is_ordered: bool,
+    layout: Layout,
+}
+
+/// What machine code is made for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Layout {
+    /// Few points: its steps are in the order of the tape.
+    AsTold,
+    /// Many points: they are in an order that waits less.
+    Ordered,
+    /// The same for so many at once that caches do not hold their numbers: what goes to memory of the caller goes past them, as it would
+    /// have to be read into them first.
+    PastCaches,
+}
+
+impl Layout {
+    /// Of a tape with so many outputs that go to memory of the caller. Of a line of a cache that is not written as a whole the caches would
+    /// be asked for the rest.
+    fn of(self, vectors: Vectors, written: usize) -> Layout {
+        let is_past = self == Layout::PastCaches && written > 0 && vectors.are_cache_lines();
+        if self == Layout::PastCaches && !is_past { Layout::Ordered } else { self }
+    }
 }
 
 /// What the compiler makes of loops.
@@ -49,28 +69,46 @@ impl InstructionSet {
     /// The same with the steps of machine code in an order that waits less: worth its while for many points; a tape of 600 steps takes some 0.3 ms.
     #[must_use]
     pub fn for_many(self) -> InstructionSet {
-        InstructionSet { is_ordered: self.native.is_some(), ..self }
+        self.laid_out(Layout::Ordered)
+    }
+
+    /// The same for so many points at once that caches do not hold their numbers: what goes to memory of the caller goes past them. Before
+    /// another thread reads it, [`InstructionSet::settle`].
+    #[must_use]
+    pub fn past_caches(self) -> InstructionSet {
+        self.laid_out(Layout::PastCaches)
+    }
+
+    fn laid_out(self, layout: Layout) -> InstructionSet {
+        InstructionSet { layout: if self.native.is_some() { layout } else { self.layout }, ..self }
+    }
+
+    /// Waits until all that this thread has written with these instructions can be seen by other threads.
+    pub fn settle(self) {
+        if self.layout == Layout::PastCaches {
+            settle();
+        }
     }
 
     /// Whether it is laid out for many points.
     pub fn is_for_many(self) -> bool {
-        self.is_ordered
+        self.layout != Layout::AsTold
     }
 
     /// The widest vectors that this machine has, with tapes gone through instruction by instruction.
     pub fn widest() -> InstructionSet {
-        InstructionSet { loops: Loops::widest(), native: None, is_ordered: false }
+        InstructionSet { loops: Loops::widest(), native: None, layout: Layout::AsTold }
     }
 
     /// All that this machine has, the plain one first.
     pub fn available() -> Vec<InstructionSet> {
-        let loops = |loops| InstructionSet { loops: Loops::Other(loops), native: None, is_ordered: false };
+        let loops = |loops| InstructionSet { loops: Loops::Other(loops), native: None, layout: Layout::AsTold };
         let mut found = vec![loops(Arch::Scalar)];
         #[cfg(target_arch = "x86_64")]
         found.extend(pulp::x86::V3::try_new().map(|avx2| loops(Arch::V3(avx2))));
         found.push(InstructionSet::widest());
         let native = |vectors| InstructionSet { native: Some(vectors), ..InstructionSet::widest() };
-        found.extend(Vectors::available().map(native).flat_map(|set| [set, set.for_many()]));
+        found.extend(Vectors::available().map(native).flat_map(|set| [set, set.for_many(), set.past_caches()]));
         found
     }
 
@@ -231,7 +269,8 @@ impl<'t> LaneEvaluator<'t> {
         }
     }
 
-    /// The same for a tape whose first outputs go to memory of the caller ([`LaneTape::writing`]).
+    /// The same for a tape whose first outputs go to memory of the caller ([`LaneTape::writing`]). Instructions that write
+    /// [past the caches](InstructionSet::past_caches) are slow where that does not begin at a multiple of 64 bytes.
     ///
     /// # Panics
     /// If `out` has not one entry for each of these.

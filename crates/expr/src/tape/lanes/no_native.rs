@@ -1,5 +1,6 @@
 //! Machines that tapes are not translated for.
 
+use super::Layout;
 use super::block::{Block, LANES};
 use super::program::LaneTape;
 
@@ -17,6 +18,10 @@ impl Vectors {
     }
 
     pub(super) fn lanes(self) -> usize {
+        match self {}
+    }
+
+    pub(super) fn are_cache_lines(self) -> bool {
         match self {}
     }
 }
@@ -51,7 +56,7 @@ pub(super) enum Part {
 pub(super) enum Native {}
 
 impl Native {
-    pub(super) fn translate(_: &LaneTape, vectors: Vectors, _: bool) -> Option<Native> {
+    pub(super) fn translate(_: &LaneTape, vectors: Vectors, _: Layout) -> Option<Native> {
         match vectors {}
     }
 
@@ -82,3 +87,6 @@ impl Native {
         match *self {}
     }
 }
+
+/// Nothing is written past the caches.
+pub(super) fn settle() {}

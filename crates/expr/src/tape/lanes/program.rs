@@ -91,8 +91,8 @@ pub struct LaneTape {
     pub(super) outputs: Vec<u32>,
     /// How many outputs go to memory of the caller.
     pub(super) written: usize,
-    /// For four lanes and for eight, as the tape says and in an order that waits less.
-    native: [[OnceLock<Option<Native>>; 2]; 2],
+    /// For four lanes and for eight, in each layout.
+    native: [[OnceLock<Option<Native>>; 3]; 2],
 }
 
 /// Where the value lives that a register of the tape holds at some step.
@@ -154,9 +154,10 @@ impl LaneTape {
 
     /// Its machine code, made when it is asked for first.
     pub(super) fn native(&self, instructions: InstructionSet) -> Option<&Native> {
-        let (vectors, is_ordered) = (instructions.native?, instructions.is_ordered);
-        let code = &self.native[vectors.index()][usize::from(is_ordered)];
-        code.get_or_init(|| Native::translate(self, vectors, is_ordered)).as_ref()
+        let vectors = instructions.native?;
+        let layout = instructions.layout.of(vectors, self.written);
+        let code = &self.native[vectors.index()][layout as usize];
+        code.get_or_init(|| Native::translate(self, vectors, layout)).as_ref()
     }
 
     /// Number of outputs.

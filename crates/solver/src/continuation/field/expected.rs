@@ -49,7 +49,7 @@ impl Strip<'_> {
         let line = &mut self.values.as_chunks_mut::<LANES>().0[midpoint.at * planes..][..planes];
         let is_met = expected.run(self.width, line);
         if is_met {
-            self.marks[midpoint.at][..self.width].fill(Mark::Solved);
+            self.marks[midpoint.at][..self.width].fill(Mark::Plain);
         }
         is_met
     }

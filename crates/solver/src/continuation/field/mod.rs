@@ -37,6 +37,8 @@ enum Mark {
     #[default]
     Unknown,
     Solved,
+    /// Solved, with a determinant that is a number.
+    Plain,
     CutByItsTool,
     Outside,
     NotKept,
@@ -47,7 +49,11 @@ enum Mark {
 
 impl Mark {
     fn is_root(self) -> bool {
-        matches!(self, Mark::Solved | Mark::CutByItsTool | Mark::Outside | Mark::NotKept)
+        matches!(self, Mark::Solved | Mark::Plain | Mark::CutByItsTool | Mark::Outside | Mark::NotKept)
+    }
+
+    fn is_solved(self) -> bool {
+        matches!(self, Mark::Solved | Mark::Plain)
     }
 
     fn of_outcome(outcome: Outcome) -> Mark {
@@ -219,7 +225,7 @@ impl Field {
     pub(crate) fn outcome(&self, point: usize) -> Option<Outcome> {
         match self.mark(point) {
             Mark::Unknown => None,
-            Mark::Solved => Some(Outcome::Solved),
+            Mark::Solved | Mark::Plain => Some(Outcome::Solved),
             Mark::CutByItsTool => Some(Outcome::CutAway(CutBy::ItsTool)),
             Mark::Outside => Some(verdict(&self.unknowns(point).collect::<Vec<_>>(), &self.ranges, true, false)),
             // the number of the condition takes the place of the determinant
@@ -249,7 +255,7 @@ impl Field {
     }
 
     pub(crate) fn is_solved(&self, point: usize) -> bool {
-        self.mark(point) == Mark::Solved
+        self.mark(point).is_solved()
     }
 
     /// Changes the verdict on a root, and nothing else.
@@ -293,7 +299,7 @@ impl Field {
 
     /// Number of solved points.
     pub(crate) fn solved(&self) -> usize {
-        self.count(|mark| mark == Mark::Solved)
+        self.count(Mark::is_solved)
     }
 
     /// Whether nothing is left to look for.
@@ -315,7 +321,9 @@ impl Field {
         let mut found = Vec::new();
         // some blocks without a decision between them, so that one is on its way from memory while another is looked at
         for (k, some) in blocks.chunks(AT_ONCE * planes).enumerate() {
-            if !some.chunks_exact(planes).fold(false, |any, values| any | lacks_any(values)) {
+            let marks = self.marks[k * AT_ONCE..][..some.len() / planes].as_flattened();
+            let are_plain = marks.iter().fold(true, |all, mark| all & (*mark == Mark::Plain));
+            if are_plain || !some.chunks_exact(planes).fold(false, |any, values| any | lacks_any(values)) {
                 continue;
             }
             for (block, values) in (k * AT_ONCE..).zip(some.chunks_exact(planes)) {
@@ -407,8 +415,7 @@ impl Field {
                     self.set(*point, self.shape.size + 2 + k, value);
                     let (block, lane) = self.shape.place(*point);
                     let mark = &mut self.marks[block][lane];
-                    *mark =
-                        if *mark == Mark::Solved && k < VITAL && !value.is_finite() { Mark::Singular } else { *mark };
+                    *mark = if mark.is_solved() && k < VITAL && !value.is_finite() { Mark::Singular } else { *mark };
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use std::ops::{Deref, DerefMut};
 
-/// Bytes of a line of a cache: vectors that begin at one do not lie across two.
+/// Bytes of a line of a cache: vectors that begin at one do not lie across two, and machine code can write them past the caches.
 const CACHE_LINE: usize = 64;
 
 /// Numbers that begin at a line of the cache.

@@ -4,6 +4,7 @@
 
 use flank_expr::LANES;
 
+use super::numbers::Numbers;
 use super::{Along, Mark, SAME_DETERMINANT, Shape, block_of, number, take};
 use crate::continuation::line::{Midpoint, STENCIL};
 use crate::continuation::path::{dips, is_between, smaller};
@@ -99,7 +100,9 @@ impl Strip<'_> {
         on_line.set_second_targets(&second);
         let mut known = known.iter().peekable();
         let mut follows = false;
-        let mut spare = vec![[0.0; LANES]; self.shape.planes];
+        let mut spare = Numbers::default();
+        spare.set_len(self.shape.planes * LANES);
+        let spare = spare.as_chunks_mut::<LANES>().0;
         // of all lines one after the other, as they lie in memory: between runs each would be waited for
         let untouched: Vec<bool> = (0..self.shape.count).map(|line| self.is_untouched(line)).collect();
         for (line, prepared) in lines.iter().enumerate() {
@@ -112,13 +115,13 @@ impl Strip<'_> {
             follows = false;
             let Some(prepared) = prepared.as_ref().filter(|_| is_next) else { continue };
             let values = &mut self.values.as_chunks_mut::<LANES>().0[line * self.shape.planes..][..self.shape.planes];
-            let out = if is_free { &mut *values } else { &mut spare };
+            let out = if is_free { &mut *values } else { &mut *spare };
             follows = on_line.run(prepared, self.width, out);
             evaluations += self.width as u64;
             if follows {
-                self.marks[line][..self.width].fill(Mark::Solved);
+                self.marks[line][..self.width].fill(Mark::Plain);
                 if !is_free {
-                    values.copy_from_slice(&spare);
+                    values.copy_from_slice(spare);
                 }
             }
         }

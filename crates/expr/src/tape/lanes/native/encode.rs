@@ -77,6 +77,8 @@ const COMPARE: Opcode = Opcode::plain(0xc2);
 const SHIFT: Opcode = Opcode::plain(0x73);
 const LOAD: Opcode = Opcode::plain(0x10);
 const STORE: Opcode = Opcode::plain(0x11);
+/// Past the caches, to an address that is a multiple of the register's length.
+const STREAM: Opcode = Opcode::plain(0x2b);
 /// By the highest bits of a register; four lanes alone.
 const SELECT: Opcode = Opcode { map: 3, prefix: 1, code: 0x4b };
 /// By a mask; eight lanes alone, as all that follow.
@@ -215,6 +217,10 @@ impl Code {
 
     pub(super) fn store(&mut self, to: Place, from: Register) {
         self.vector(STORE, from, 0, Operand::Memory(to));
+    }
+
+    pub(super) fn stream(&mut self, to: Place, from: Register) {
+        self.vector(STREAM, from, 0, Operand::Memory(to));
     }
 
     /// Saves what a function has to preserve and keeps its five arguments (System V). Calls find the stack at a multiple of 16.

@@ -2,8 +2,8 @@
 //!
 //! The code does what the instructions of the tape say, so its results have the same bits, in whatever order that needs. Where an angle is
 //! too large for the short reduction it says so, and the tape runs again, instruction by instruction. This module
-//! holds all unsafe code of the libraries: to enter code that was made at run time, to be called by it, and to run loops of the compiler on
-//! AVX-512. Memory is written first and executable then, never both.
+//! holds all unsafe code of the libraries: to enter code that was made at run time, to be called by it, to wait for what it has written,
+//! and to run loops of the compiler on AVX-512. Memory is written first and executable then, never both.
 
 mod encode;
 mod loops;
@@ -20,6 +20,7 @@ pub(super) use self::loops::EightLanes;
 use self::lower::{Call, Lowered, Target, lower};
 use self::registers::{OPERANDS, RESULT, assemble};
 use self::schedule::ordered;
+use super::Layout;
 use super::block::{Block, LANES};
 use super::program::LaneTape;
 use crate::symbolic::op::Unary;
@@ -57,6 +58,11 @@ impl Vectors {
             Vectors::Four => 4,
             Vectors::Eight => 8,
         }
+    }
+
+    /// Whether a register is as long as a line of a cache.
+    pub(super) fn are_cache_lines(self) -> bool {
+        self == Vectors::Eight
     }
 
     fn registers(self) -> usize {
@@ -102,6 +108,8 @@ struct Translation {
     /// The block of the largest angles, and whether the two functions write it.
     angles: usize,
     has_angles: [bool; 2],
+    /// Whether these outputs go there past the caches.
+    streams: bool,
 }
 
 /// Which of a tape's instructions.
@@ -112,9 +120,8 @@ pub(super) enum Part {
 }
 
 impl Native {
-    /// None where the machine forbids such memory, and for tapes too long for it. What is ordered does the steps of a tape in the order in
-    /// which they wait least.
-    pub(super) fn translate(tape: &LaneTape, vectors: Vectors, is_ordered: bool) -> Option<Native> {
+    /// None where the machine forbids such memory, and for tapes too long for it.
+    pub(super) fn translate(tape: &LaneTape, vectors: Vectors, layout: Layout) -> Option<Native> {
         if tape.by_lane.len() + tape.each.len() > MOST_INSTRUCTIONS {
             return None;
         }
@@ -128,7 +135,7 @@ impl Native {
             (*block, target)
         });
         let mut each = lower(tape, &tape.each, outputs, angles as u32, kept.constants.clone());
-        if is_ordered {
+        if layout != Layout::AsTold {
             for part in [&mut kept, &mut each] {
                 part.steps = ordered(std::mem::take(&mut part.steps), vectors);
             }
@@ -139,7 +146,7 @@ impl Native {
                 Vectors::Four => (called::<4> as *const ()).addr(),
                 Vectors::Eight => (called::<8> as *const ()).addr(),
             };
-            assemble(lowered, vectors, function, &addresses)
+            assemble(lowered, (vectors, layout == Layout::PastCaches), function, &addresses)
         };
         let [kept_code, each_code] = [&kept, &each].map(assembled);
         let code = [kept_code.code.as_slice(), &each_code.code].concat();
@@ -157,6 +164,7 @@ impl Native {
             written: tape.written,
             angles,
             has_angles: [kept.has_angles, each.has_angles],
+            streams: layout == Layout::PastCaches,
         })))
     }
 
@@ -180,8 +188,8 @@ impl Native {
         self.0.vectors.spread() > 1
     }
 
-    /// Runs the first lanes, `count` of them at least; false if a lane has an angle that is too large. Outputs that go to memory of
-    /// the caller, those of [`Part::Each`], go to `out`.
+    /// Runs the first lanes, `count` of them at least; false if a lane has an angle that is too large, or `out` begins where the code
+    /// cannot write. Outputs that go to memory of the caller, those of [`Part::Each`], go to `out`.
     pub(super) fn run(
         &self,
         (part, count): (Part, usize),
@@ -191,6 +199,9 @@ impl Native {
         out: &mut [[f64; LANES]],
     ) -> bool {
         let lanes = self.0.vectors.lanes();
+        if self.0.streams && !out.is_empty() && !out.as_ptr().addr().is_multiple_of(lanes * size_of::<f64>()) {
+            return false;
+        }
         let vectors = count.clamp(1, LANES).div_ceil(lanes);
         self.enter((part, vectors), scalars, blocks, scratch, out);
         let angles = &blocks[self.0.angles].0[..vectors * lanes];
@@ -219,13 +230,21 @@ impl Native {
         assert!(out.len() >= written);
         // SAFETY: the memory holds two whole functions of this type, one after the other, made by `assemble` for vectors that
         // this machine has, and `start` is where one of them begins. They read and write blocks, scalars, scratch memory and outputs only
-        // up to the lengths that were just compared, and of each block the first `vectors` vectors, which it has.
+        // up to the lengths that were just compared, and of each block the first `vectors` vectors, which it has. Code that streams is
+        // entered with outputs that begin where a register's length lets them.
         unsafe {
             let function: extern "sysv64" fn(*mut Block, *const f64, *mut Block, *mut [f64; LANES], usize) =
                 std::mem::transmute(code.memory.as_ptr().add(start));
             function(blocks.as_mut_ptr(), scalars, scratch.as_mut_ptr(), out.as_mut_ptr(), vectors);
         }
     }
+}
+
+/// Waits until all that this thread's code has written past the caches can be seen by other threads.
+#[allow(unsafe_code)]
+pub(super) fn settle() {
+    // SAFETY: each x86-64 processor has this instruction.
+    unsafe { std::arch::x86_64::_mm_sfence() }
 }
 
 /// What the code calls: an operation on as many lanes of the scratch memory as a register has.

@@ -21,9 +21,15 @@ pub(super) struct Assembled {
     pub(super) scratch: usize,
 }
 
-/// `call` is a function that takes one of the addresses in `arguments` (one for each call) and the scratch memory.
-pub(super) fn assemble(lowered: &Lowered, vectors: Vectors, call: usize, arguments: &[usize]) -> Assembled {
-    let mut allocation = Allocation::new(&lowered.steps, vectors);
+/// `call` is a function that takes one of the addresses in `arguments` (one for each call) and the scratch memory. What `streams` writes
+/// its outputs past the caches.
+pub(super) fn assemble(
+    lowered: &Lowered,
+    (vectors, streams): (Vectors, bool),
+    call: usize,
+    arguments: &[usize],
+) -> Assembled {
+    let mut allocation = Allocation::new(&lowered.steps, (vectors, streams));
     allocation.code.prologue();
     let start = allocation.code.bytes.len();
     for (k, step) in lowered.steps.iter().enumerate() {
@@ -46,6 +52,7 @@ struct Allocation<'s> {
     steps: &'s [Step],
     code: Code,
     vectors: Vectors,
+    streams: bool,
     /// The value in each register.
     registers: Vec<Option<Value>>,
     /// The register of each value.
@@ -63,7 +70,7 @@ struct Allocation<'s> {
 }
 
 impl<'s> Allocation<'s> {
-    fn new(steps: &'s [Step], vectors: Vectors) -> Allocation<'s> {
+    fn new(steps: &'s [Step], (vectors, streams): (Vectors, bool)) -> Allocation<'s> {
         let mut next_use = vec![NEVER; steps.len()];
         let mut use_after = vec![[NEVER; 3]; steps.len()];
         for (k, step) in steps.iter().enumerate().rev() {
@@ -79,6 +86,7 @@ impl<'s> Allocation<'s> {
             steps,
             code: Code::new(vectors),
             vectors,
+            streams,
             registers: vec![None; vectors.registers()],
             place: vec![None; steps.len()],
             slot: vec![None; steps.len()],
@@ -224,11 +232,13 @@ impl<'s> Allocation<'s> {
 
     fn output(&mut self, k: usize, target: Target, value: Value) {
         let register = self.load(value, &[]);
-        let place = match target {
-            Target::Block(block) => block_place(block),
-            Target::Output(index) => Place { base: Base::Outputs, offset: (index as usize * BLOCK) as i32 },
-        };
-        self.code.store(place, register);
+        match target {
+            Target::Block(block) => self.code.store(block_place(block), register),
+            Target::Output(index) => {
+                let place = Place { base: Base::Outputs, offset: (index as usize * BLOCK) as i32 };
+                if self.streams { self.code.stream(place, register) } else { self.code.store(place, register) }
+            }
+        }
         self.release(k);
     }
 
