@@ -27,7 +27,7 @@ const fn page(path: &'static str) -> Page {
     Page { path, file: "page.chain", changes: &[] }
 }
 
-const PAGES: [Page; 8] = [
+const PAGES: [Page; 9] = [
     Page {
         path: "docs/tutorial.md",
         file: "gear.chain",
@@ -43,6 +43,7 @@ const PAGES: [Page; 8] = [
     page("docs/milling.md"),
     page("docs/contact.md"),
     page("docs/files.md"),
+    page("docs/fit.md"),
     page("docs/gears.md"),
 ];
 

@@ -176,6 +176,9 @@ fn comparisons_and_pictures() {
     judge.run(&[&tolerance[..], &["--budget", "bias=0.001um"]].concat(), 3);
     judge.run(&[&["report", SPUR, "--certify", "--step"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain"][..], &at].concat(), 3);
+    // documents within a document: a contact, and what is milled
+    judge.run(&[&["report", "specs/pairs/spur_pair.chain"][..], &at].concat(), 0);
+    judge.run(&[&["report", "specs/bevel/milled_pinion.chain"][..], &at].concat(), 0);
     judge.run(&[&["report", "specs/hobbing/undercut_gear.chain", "--set", "teeth=x"][..], &at].concat(), 1);
     judge.has_met(&[
         "flank.contact/1",

@@ -487,7 +487,7 @@ fn bevel_gears_of_wrong_settings_are_told_as_such() {
         (
             "pinion_19x62",
             &["c.theta_from=-170 deg", "c.theta_to=-80 deg"],
-            "theta of c.outside.blade from -265.2113 to -238.8375 deg would reach them all; its range is -170.0000 .. -80.0000 deg",
+            "theta of c.outside.blade from -265.2114 to -238.8374 deg would reach them all; its range is -170.0000 .. -80.0000 deg",
         ),
         ("formate_gear", &["c.theta_from=0 deg", "c.theta_to=90 deg"], "theta of c.outside.blade from"),
     ] {

@@ -7,8 +7,8 @@ use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
 use crate::syntax::ast::{
-    self, Call, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, Param, Side, SurfaceParameter,
-    ToolStatement,
+    self, Call, Expected, Expression, ExpressionKind, File, Item, JobStatement, MachineStatement, Param, Side,
+    SurfaceParameter, ToolStatement,
 };
 use crate::values::context::Context;
 
@@ -216,7 +216,13 @@ impl Used {
                     word.increment.iter().for_each(|increment| self.expression(increment));
                 }
                 MachineStatement::Require(required) => self.expression(&required.condition),
-                MachineStatement::Expect(expected) => expected.each(&mut |part| self.part(part)),
+                MachineStatement::Expect(expected) => {
+                    expected.each(&mut |part| self.part(part));
+                    // without it the expectation would give a value to nothing
+                    if let Expected::Pose { at, .. } = &expected.what {
+                        self.words.extend(at.iter().filter_map(|value| Some(value.name.as_ref()?.node.clone())));
+                    }
+                }
             }
         }
     }

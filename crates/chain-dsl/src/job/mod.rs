@@ -333,10 +333,16 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn define(&mut self, context: &mut Context<'g>, name: &Name) {
+        self.is_first(context, name);
+    }
+
+    /// Defines a name, of which a second definition is reported and makes nothing.
+    fn is_first(&mut self, context: &mut Context<'g>, name: &Name) -> bool {
         let first = *self.names.entry(name.node.clone()).or_insert(name.span);
         if first != name.span {
             context.duplicate(name, first);
         }
+        first == name.span
     }
 
     fn declare(&mut self, context: &mut Context<'g>, statement: &JobStatement, binder: &mut Binder<'_, 'g>) {
@@ -359,7 +365,9 @@ impl<'g> Builder<'_, 'g> {
             }
             JobStatement::Motion(motion) | JobStatement::Unknown(motion) => {
                 let is_unknown = matches!(statement, JobStatement::Unknown(_));
-                self.define(context, &motion.name);
+                if !self.is_first(context, &motion.name) {
+                    return;
+                }
                 sample::check_unknown(context, &motion.name, if is_unknown { "unknown" } else { "motion" });
                 let bounded = tool::bounded(context, motion, &self.scope, Role::Motion);
                 self.unknowns.extend(bounded.iter().filter(|_| is_unknown).map(|bounded| bounded.variable));
@@ -402,7 +410,9 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn machine(&mut self, context: &mut Context<'g>, instance: &ast::Instance) {
-        self.define(context, &instance.name);
+        if !self.is_first(context, &instance.name) {
+            return;
+        }
         let machines = self.definitions.machines;
         let own = self.machines.iter().find(|(name, ..)| name.node == instance.definition.node);
         let own = own.map(|(name, definition, built)| Original {
@@ -441,7 +451,9 @@ impl<'g> Builder<'_, 'g> {
     }
 
     fn tool(&mut self, context: &mut Context<'g>, instance: &ast::Instance) {
-        self.define(context, &instance.name);
+        if !self.is_first(context, &instance.name) {
+            return;
+        }
         let tools = self.definitions.tools;
         let own = self.tools.iter().find(|(name, ..)| name.node == instance.definition.node);
         let own = own.map(|(name, definition, built)| {

@@ -182,13 +182,17 @@ pub(crate) fn numbers(
             continue;
         }
         let line = record.position().map_or(0, csv::Position::line);
-        let number = |columns: &[(usize, f64)]| {
-            let mut cells = columns.iter().map(|(column, size)| (record.get(*column).unwrap_or(""), *size));
-            let (cell, size) = cells.find(|(cell, _)| !cell.is_empty()).unwrap_or(("", 1.0));
+        let number = |((name, _), columns): (&(&str, Dimension), &Vec<(usize, f64)>)| {
+            let cells = columns.iter().map(|(column, size)| (record.get(*column).unwrap_or(""), *size));
+            let mut cells = cells.filter(|(cell, _)| !cell.is_empty());
+            let (cell, size) = cells.next().unwrap_or(("", 1.0));
+            if cells.next().is_some() {
+                return Err(wrong(format!("line {line}: two columns are called `{name}` and both have a value")));
+            }
             let value = cell.parse::<f64>().ok().map(|value| value * size).filter(|value| value.is_finite());
             value.ok_or_else(|| wrong(format!("line {line}: `{cell}` is not a finite number")))
         };
-        points.push(places.iter().map(|place| number(place)).collect::<Result<Vec<f64>, Reason>>()?);
+        points.push(columns.iter().zip(&places).map(number).collect::<Result<Vec<f64>, Reason>>()?);
         if points.len() > limits::TABLE_ROWS.most {
             return Err(Reason::Exceeded(limits::TABLE_ROWS));
         }

@@ -275,6 +275,12 @@ fn wrong_tables_are_told() {
     );
     assert_eq!(check("table-column", TOOL, &TABLE.replace("depth", "height")), [Code::WrongTable]);
     assert_eq!(check("table-number", TOOL, &TABLE.replace("40", "4o")), [Code::WrongTable]);
+    let with_another = TABLE.replace("turn", "turn, depth [um]").replace("0, 0, 0", "0, , 0, 0");
+    // each row has one of both
+    let each =
+        with_another.replace("1, 10, 1", "1, 10, 1,").replace("2, 40, 2", "2, 40, 2,").replace("160, 4", "160, 4,");
+    assert_eq!(check("table-each", TOOL, &each), []);
+    assert_eq!(check("table-twice", TOOL, &each.replace("40, 2,", "40, 2, 40")), [Code::WrongTable]);
     for (name, cell) in [("nan", "nan"), ("inf", "-inf"), ("overflow", "1e999"), ("of-unit", "1e308")] {
         let table = TABLE.replace("[um]", "[cm]").replace("40", cell);
         assert_eq!(check(&format!("table-{name}"), TOOL, &table), [Code::WrongTable], "{name}");

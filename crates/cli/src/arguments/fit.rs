@@ -29,7 +29,7 @@ Examples:
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --vary radial_distance,machine_root_angle --share 0.7
   flank fit specs/bevel/pinion_19x62.chain concave --measured measured.csv --write corrected.chain
   flank fit specs/bevel/ease_off_19x62.chain pinion.concave --ease-off 'crowning: 50, 25' --from basic.concave --order 2
-  flank fit specs/pairs/bevel_19x62.chain --want centred --vary p.radial_distance,p.ratio_of_roll,p.work_offset")]
+  flank fit specs/pairs/bevel_19x62.chain --want centred --vary p.radial_distance,p.work_offset,p.sliding_base,p.ratio_of_roll,p.modified_roll_2c,pinion_cutter.blade_angle")]
 pub(crate) struct Fit {
     #[command(flatten)]
     pub(crate) which: JobArguments,

@@ -19,7 +19,7 @@ Examples:
   flank mill specs/bevel/milled_pinion.chain --format csv,apt --nc linuxcnc,siemens --feed 800 --spindle 12000
   flank mill specs/bevel/milled_pinion.chain --nc siemens --tcp --spaces 19
   flank mill specs/bevel/milled_pinion.chain --clamp mill.work_z=20mm..120mm
-  flank mill specs/bevel/milled_pinion.chain --verify build/milled_pinion.finish.ngc")]
+  flank mill specs/bevel/milled_pinion.chain finish --verify build/milled_pinion.finish.ngc")]
 pub(crate) struct Mill {
     #[command(flatten)]
     pub(crate) which: JobArguments,

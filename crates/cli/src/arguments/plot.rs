@@ -21,7 +21,7 @@ Examples:
   flank plot specs/hobbing/spur_gear.chain --what contact-lines --surface flank_plus,flank_minus --format svg
   flank plot specs/bevel/pinion_19x62.chain --what sensitivity --of m.radial_distance,c.blade_angle
   flank plot specs/bevel/ease_off_19x62.chain --what topography --surface pinion.concave --reference conjugate.concave
-  flank plot specs/pairs/spur_pair.chain --what pattern,error --error m.S=2arcmin")]
+  flank plot specs/pairs/bevel_19x62.chain --what pattern,error --error m.S=2arcmin")]
 pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) which: JobArguments,

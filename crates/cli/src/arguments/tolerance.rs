@@ -19,7 +19,7 @@ Examples:
   flank tolerance specs/bevel/pinion_19x62.chain concave
   flank tolerance specs/bevel/pinion_19x62.chain concave --scatter radial_distance=5um,machine_root_angle=20arcsec,ratio_of_roll=0.01%
   flank tolerance specs/bevel/pinion_19x62.chain concave --budget bias=3um,crowning_lengthwise=2um
-  flank tolerance specs/pairs/bevel_19x62.chain pinion.concave --scatter m.E=10um,m.S=1arcmin --sweep 1000")]
+  flank tolerance specs/pairs/bevel_19x62.chain pinion_concave --scatter m.E=10um,m.S=1arcmin --sweep 1000")]
 pub(crate) struct Tolerance {
     #[command(flatten)]
     pub(crate) which: JobArguments,

@@ -84,6 +84,16 @@ pub(crate) fn off(mm: f64) -> String {
     if um == 0.0 || um >= 1e-2 { format!("{um:.3} um") } else { format!("{um:.1e} um") }
 }
 
+/// The same with an end of a range, which is rounded so that the range becomes no narrower: down below the value, up above.
+pub(crate) fn end_digits(dimension: Dimension, end: f64, decimals: usize, is_upper: bool) -> String {
+    // of the last decimal: what rounding leaves of an end that is told exactly
+    const SLACK: f64 = 1e-6;
+    let unit = 10f64.powi(-(decimals as i32));
+    let steps = shown(dimension, end) / unit;
+    let outward = if is_upper { (steps - SLACK).ceil() } else { (steps + SLACK).floor() };
+    fixed(outward * unit, decimals)
+}
+
 /// A value in its unit, with some decimals.
 pub(crate) fn text(dimension: Dimension, value: f64, decimals: usize) -> String {
     format!("{} {}", digits(dimension, value, decimals), symbol(dimension)).trim_end().to_string()

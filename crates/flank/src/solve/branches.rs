@@ -184,7 +184,7 @@ pub(crate) fn undecided(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
     solved.iter().filter(|solved| !solved.effort.undecided.is_empty()).map(told).collect()
 }
 
-/// What would decide whether there are further branches.
+/// What may decide whether there are further branches.
 fn what_decides(solved: &Solved<'_, '_>) -> String {
     let unknowns = &solved.surface.unknowns;
     let share = |k: usize| {
@@ -202,7 +202,7 @@ fn what_decides(solved: &Solved<'_, '_>) -> String {
     } else {
         String::new()
     };
-    format!("{narrower}a `keep` of one of them{more} would decide it")
+    format!("{narrower}a `keep` of one of them{more} may decide it")
 }
 
 /// The branches of a surface at the place where they were looked for, and what is not excluded there.

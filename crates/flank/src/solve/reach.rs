@@ -6,6 +6,9 @@ use flank_solver::{Outcome, Range, SurfacePoint};
 use crate::project::units;
 use crate::solve::surface::ranges;
 
+/// Of the ends that are told.
+const DECIMALS: usize = 4;
+
 /// What an unknown would have to run through.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Needed {
@@ -51,19 +54,24 @@ impl Needed {
             let ends = (0..2).filter(|k| beyond[*k]).map(|k| next_piece(job, surface, (of, piece), k));
             return ends.collect::<Vec<_>>().join("; ");
         }
-        let shown = |value: f64| units::digits(of.dimension, value, 4);
+        let shown = |value: f64| units::digits(of.dimension, value, DECIMALS);
         let generation = &surface.generation;
         let is_motion = generation.motions.contains(&of.variable);
         let owner = if is_motion { String::new() } else { format!(" of {}", generation.tool_name) };
-        let [low, high] = [self.range.low, self.range.high].map(shown);
-        let whole = units::text(of.dimension, self.range.high, 4);
-        let values = if low == high { format!("at {whole}") } else { format!("from {low} to {whole}") };
+        let values = match [self.range.low, self.range.high].map(shown) {
+            [low, high] if low == high => format!("at {}", units::text(of.dimension, self.range.high, DECIMALS)),
+            _ => {
+                let [low, high] = [(self.range.low, false), (self.range.high, true)]
+                    .map(|(end, is_upper)| units::end_digits(of.dimension, end, DECIMALS, is_upper));
+                format!("from {low} to {high} {}", units::symbol(of.dimension)).trim_end().to_string()
+            }
+        };
         format!(
             "{}{owner} {values} would reach {}; its range is {} .. {}",
             of.name,
             if self.is_all { "them all" } else { "more of them" },
             shown(of.low),
-            units::text(of.dimension, of.high, 4),
+            units::text(of.dimension, of.high, DECIMALS),
         )
     }
 }

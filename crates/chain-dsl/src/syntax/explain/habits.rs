@@ -14,7 +14,21 @@ impl Mistake<'_> {
         if let Some(diagnostic) = foreign(self.scan, self.found).filter(|_| self.found < self.range.end) {
             return Some(diagnostic);
         }
-        self.space().or_else(|| self.decimal()).or_else(|| self.second_call()).or_else(|| self.sign())
+        self.block()
+            .or_else(|| self.space())
+            .or_else(|| self.decimal())
+            .or_else(|| self.second_call())
+            .or_else(|| self.sign())
+    }
+
+    /// `machine mill [`
+    fn block(&self) -> Option<Diagnostic> {
+        let is_sign = matches!(self.say(), "(" | "[") && self.expected.contains(&Rule::open_brace);
+        let is_last = self.found + 1 >= self.range.end || self.scan.indent(self.found + 1).is_some();
+        (is_sign && is_last).then(|| {
+            let found = self.here(format!("a block begins with `{{`, not with `{}`", self.say()));
+            found.help("write `{`, and `}` at its end").cure("write `{`", self.place(), "{")
+        })
     }
 
     /// `curve("ratio.csv", x: angle, y: length)(turn)`
