@@ -3,17 +3,19 @@
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, ScalarEvaluator, Tape, TapeError};
 
+use crate::analysis::feet::{Feet, Foot, squared_distance};
 use crate::equations::solution::{Outcome, Range, Solution, distance};
 use crate::equations::system::{Evaluation, System};
 use crate::newton::scalar::{determinant, inverse_times, solve_with};
-use crate::surface::SurfaceProblem;
 use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
-/// Points of the second surface in each of its first two unknowns, from which meetings are looked for.
-const SEEDS: usize = 9;
 /// Pairs of points, one of each surface, that a line's meetings are looked for from; the nearest ones.
 const PAIRS: usize = 6;
+/// Points of a line whose normals are followed to the second surface, to see on which side of it they lie.
+const FOLLOWED: usize = 65;
+/// A point nearer to the second surface than its neighbours by this, mm, may lie between two meetings.
+const NEARER: f64 = 1e-9;
 /// Two iterations that end nearer than this share of the ranges found the same meeting.
 const SAME: f64 = 1e-6;
 /// Surfaces at a smaller angle only touch: with curvatures of 1/mm they then part by less than the tolerance of a point over the
@@ -31,7 +33,7 @@ pub struct Intersection {
     first_unknowns: usize,
     /// Of the unknowns and the line: position, both normals, how far along the line, and its derivatives.
     probe: Tape,
-    seeds: Vec<SurfacePoint>,
+    second: Feet,
 }
 
 /// A line in the plane of two coordinates: `from + s · direction`.
@@ -73,7 +75,7 @@ impl Intersection {
         let across = first.with_values(&coordinates);
         // both may be envelopes over the same motion, at different values of it
         let second = second.renamed("of the second");
-        let seeds = seeds(&second)?;
+        let feet = Feet::new(&second)?;
         let ranges = [first.ranges(), second.ranges()].concat();
         let (first, second) = (first.surface(), second.surface());
         let line = ["from 1", "from 2", "direction 1", "direction 2"].map(|name| graph.variable(name));
@@ -100,7 +102,7 @@ impl Intersection {
             ranges,
             first_unknowns: first.unknowns.len(),
             probe: Tape::new(&probe, &inputs)?,
-            seeds,
+            second: feet,
         })
     }
 
@@ -127,6 +129,35 @@ impl Intersection {
         }
         found.sort_by(|a, b| a.along.total_cmp(&b.along));
         found
+    }
+
+    /// Unknowns of both surfaces near their meetings on a line, from points of the first in the order along it: where two neighbours lie
+    /// on different sides of the second surface, and where one lies nearer to it than both neighbours.
+    pub(crate) fn crossings(&self, points: &[&SurfacePoint]) -> Vec<Vec<f64>> {
+        let count = points.len().min(FOLLOWED);
+        let spread = (0..count).map(|k| points[k * (points.len() - 1) / (count - 1).max(1)]);
+        let points: Vec<&SurfacePoint> = spread.collect();
+        let feet = self.second.along(&points);
+        let known: Vec<(&SurfacePoint, &Foot)> =
+            points.iter().zip(&feet).filter_map(|(point, foot)| Some((*point, foot.as_ref()?))).collect();
+        let both = |(point, foot): (&SurfacePoint, &Foot)| [&point.unknowns[..], &foot.unknowns].concat();
+        let mut starts = Vec::new();
+        for pair in known.windows(2) {
+            let [from, to] = [pair[0].1.distance, pair[1].1.distance];
+            if (from < 0.0) != (to < 0.0) {
+                let [a, b] = [both(pair[0]), both(pair[1])];
+                starts.push(a.iter().zip(&b).map(|(a, b)| a + (b - a) * from / (from - to)).collect());
+                // where a motion comes round, there is nothing between them
+                starts.extend([a, b]);
+            }
+        }
+        for triple in known.windows(3) {
+            let [before, here, after] = [0, 1, 2].map(|k| triple[k].1.distance.abs());
+            if here + NEARER < before.min(after) {
+                starts.push(both(triple[1]));
+            }
+        }
+        starts
     }
 
     /// Whether no fold parts a point of the first surface from the nearest one of some that are known, if there are any.
@@ -177,7 +208,7 @@ impl Intersection {
     fn pairs(&self, near: &[&SurfacePoint]) -> impl Iterator<Item = Vec<f64>> {
         let mut pairs: Vec<(f64, &SurfacePoint, &SurfacePoint)> = Vec::new();
         for point in near {
-            let nearest = self.seeds.iter().map(|seed| (squared_distance(point, seed), *point, seed));
+            let nearest = self.second.seeds.iter().map(|seed| (squared_distance(point, seed), *point, seed));
             pairs.extend(nearest.min_by(|a, b| a.0.total_cmp(&b.0)));
         }
         pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -196,19 +227,4 @@ impl Meeting {
     pub fn unknowns(&self) -> Vec<f64> {
         [&self.first.unknowns[..], &self.second.unknowns].concat()
     }
-}
-
-/// Points all over a surface that its tool leaves.
-fn seeds(surface: &BoundSurface<'_>) -> Result<Vec<SurfacePoint>, TapeError> {
-    let (unknowns, ranges) = (&surface.surface().unknowns, surface.ranges());
-    let coordinates = [unknowns[0], unknowns[1]];
-    let problem = SurfaceProblem::new(surface, coordinates)?.points_alone();
-    let value = |k: usize, step: usize| ranges[k].low + ranges[k].width() * step as f64 / (SEEDS - 1) as f64;
-    let targets: Vec<[f64; 2]> = (0..SEEDS * SEEDS).map(|at| [value(0, at / SEEDS), value(1, at % SEEDS)]).collect();
-    let (points, _) = problem.solve(&targets, [SEEDS; 2]);
-    Ok(points.into_iter().filter(|point| point.outcome == Outcome::Solved).collect())
-}
-
-fn squared_distance(a: &SurfacePoint, b: &SurfacePoint) -> f64 {
-    a.position.iter().zip(b.position).map(|(a, b)| (a - b) * (a - b)).sum()
 }

@@ -5,6 +5,7 @@ pub(crate) mod alignment;
 pub(crate) mod cutting;
 pub(crate) mod deviation;
 pub(crate) mod extent;
+pub(crate) mod feet;
 pub(crate) mod geometry;
 pub(crate) mod inspection;
 pub(crate) mod integer_points;

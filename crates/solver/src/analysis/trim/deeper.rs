@@ -24,8 +24,9 @@ pub(super) fn mark_deeper<'g>(
     points_of_by: &dyn Fn([Expr<'g>; 2]) -> SurfaceProblem,
 ) -> Result<(), TapeError> {
     let Some(places) = Places::telling(points) else { return Ok(()) };
-    let coordinates = places.values(by.surface().position.0, |x, y| (x * x + y * y).sqrt());
+    let coordinates = places.of_surface(by.surface().position.0);
     let (near, _) = points_of_by(coordinates).points_alone().solve(&places.targets(points), counts);
+    let near = with_neighbours(&near, counts);
     let off = Deviation::new(by, Alignment::default())?.map(points, &near, 0.0);
     for ((point, near), off) in points.iter_mut().zip(&near).zip(off) {
         let is_deeper = off.is_some_and(|off| off < -ON_EACH_OTHER) && turned_normal(near, point) > 0.0;
@@ -38,10 +39,29 @@ pub(super) fn mark_deeper<'g>(
     Ok(())
 }
 
-/// Two functions of a place that tell the points of a surface: two of x, y, z, or the distance from the z axis and z.
+/// The points of a grid; where none was found, one beside it. The angle comes round at a place, where a point is not found.
+fn with_neighbours(points: &[SurfacePoint], [rows, columns]: [usize; 2]) -> Vec<SurfacePoint> {
+    let beside = |at: usize| {
+        let (i, j) = (at / columns, at % columns);
+        let down = [i.checked_sub(1), Some(i + 1).filter(|i| *i < rows)].into_iter().flatten();
+        let across = [j.checked_sub(1), Some(j + 1).filter(|j| *j < columns)].into_iter().flatten();
+        let others = down.map(move |i| i * columns + j).chain(across.map(move |j| i * columns + j));
+        others.map(|other| &points[other]).find(|other| other.outcome == Outcome::Solved)
+    };
+    let is_open = |point: &SurfacePoint| !point.outcome.is_root() && point.outcome != Outcome::Ambiguous;
+    let filled = points.iter().enumerate().map(|(at, point)| match is_open(point) {
+        true => beside(at).unwrap_or(point),
+        false => point,
+    });
+    filled.cloned().collect()
+}
+
+/// Two functions of a place that tell the points of a surface: two of x, y, z, or z and one of the polar coordinates about it.
 #[derive(Clone, Copy)]
 enum Places {
     RadiusAndHeight,
+    /// The angle from a direction in the plane of x and y.
+    AngleAndHeight([f64; 2]),
     /// Without the one of this number.
     Without(usize),
 }
@@ -49,42 +69,62 @@ enum Places {
 impl Places {
     /// Those across which some points' surface lies least, whatever its own coordinates are; `None` if no point is solved.
     fn telling(points: &[SurfacePoint]) -> Option<Places> {
-        let solved = || points.iter().filter(|point| point.outcome == Outcome::Solved);
-        solved().next()?;
-        let sum = |part: &dyn Fn(&SurfacePoint) -> f64| solved().map(|point| part(point).abs()).sum::<f64>();
+        let solved: Vec<&SurfacePoint> = points.iter().filter(|point| point.outcome == Outcome::Solved).collect();
+        let middle = solved.get(solved.len() / 2)?.position;
+        let sum = |part: &dyn Fn(&SurfacePoint) -> f64| solved.iter().map(|point| part(point).abs()).sum::<f64>();
+        let over_radius = |part: f64, [x, y, _]: [f64; 3]| part / x.hypot(y).max(f64::MIN_POSITIVE);
         let tangential = |point: &SurfacePoint| {
             let ([x, y, _], [nx, ny, _]) = (point.position, point.normal);
-            (x * ny - y * nx) / x.hypot(y).max(f64::MIN_POSITIVE)
+            over_radius(x * ny - y * nx, point.position)
         };
+        let radial = |point: &SurfacePoint| {
+            let ([x, y, _], [nx, ny, _]) = (point.position, point.normal);
+            over_radius(x * nx + y * ny, point.position)
+        };
+        let others = [(Places::AngleAndHeight([middle[0], middle[1]]), sum(&radial))];
+        let others = others.into_iter().chain((0..3).map(|k| (Places::Without(k), sum(&|point| point.normal[k]))));
         let mut best = (Places::RadiusAndHeight, sum(&tangential));
-        for k in 0..3 {
-            let own = sum(&|point| point.normal[k]);
+        for (places, own) in others {
             if own > CLEARLY * best.1 {
-                best = (Places::Without(k), own);
+                best = (places, own);
             }
         }
         Some(best.0)
     }
 
-    fn values<T: Copy>(self, [x, y, z]: [T; 3], radius: impl Fn(T, T) -> T) -> [T; 2] {
+    fn of_surface<'g>(self, [x, y, z]: [Expr<'g>; 3]) -> [Expr<'g>; 2] {
         match self {
-            Places::RadiusAndHeight => [radius(x, y), z],
-            Places::Without(0) => [y, z],
-            Places::Without(1) => [x, z],
-            Places::Without(_) => [x, y],
+            Places::RadiusAndHeight => [(x * x + y * y).sqrt(), z],
+            Places::AngleAndHeight([a, b]) => [(y * a - x * b).atan2(x * a + y * b), z],
+            Places::Without(k) => without(k, [x, y, z]),
+        }
+    }
+
+    fn of_point(self, [x, y, z]: [f64; 3]) -> [f64; 2] {
+        match self {
+            Places::RadiusAndHeight => [x.hypot(y), z],
+            Places::AngleAndHeight([a, b]) => [(y * a - x * b).atan2(x * a + y * b), z],
+            Places::Without(k) => without(k, [x, y, z]),
         }
     }
 
     /// Their values at points; where one is not solved, those of the solved one before it, or of the first.
     fn targets(self, points: &[SurfacePoint]) -> Vec<[f64; 2]> {
-        let target =
-            |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.values(point.position, f64::hypot));
+        let target = |point: &SurfacePoint| (point.outcome == Outcome::Solved).then(|| self.of_point(point.position));
         let mut last = points.iter().find_map(target).unwrap_or_default();
         let targets = points.iter().map(|point| {
             last = target(point).unwrap_or(last);
             last
         });
         targets.collect()
+    }
+}
+
+fn without<T: Copy>(k: usize, [x, y, z]: [T; 3]) -> [T; 2] {
+    match k {
+        0 => [y, z],
+        1 => [x, z],
+        _ => [x, y],
     }
 }
 

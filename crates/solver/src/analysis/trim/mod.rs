@@ -89,7 +89,8 @@ pub fn trim(
             let line = Line::through(indices, targets, coordinate);
             let near: Vec<&SurfacePoint> =
                 indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved).collect();
-            let found = intersection.on_line(line, &before, &near);
+            let starts = [before.clone(), intersection.crossings(&near)].concat();
+            let found = intersection.on_line(line, &starts, &near);
             decide(&mut known, &mut joined, indices, targets, line, &found);
             if !found.is_empty() {
                 before = found.iter().map(Meeting::unknowns).collect();
