@@ -148,6 +148,81 @@ fn balls_touch_about_the_middle_of_the_flanks_and_stand_out() {
     assert!(balls.over_balls_mm < gauges.tip_diameter_mm.expect("round"), "between them: {balls:?}");
 }
 
+const WAVES: &str = "tests/surfaces/specs/waves.chain";
+
+/// Planes touch waves where these are round, and not where they are hollow: by the distance of the closed section from a plane through the axis, whose
+/// maxima along the upper flank of the last tooth are what planes touch, and whose minima lie in the steel.
+#[test]
+fn planes_touch_no_hollow_flank() {
+    for (count, all) in [(20.0_f64, vec![3]), (7.0, vec![])] {
+        let (body, _) = Asked::new(WAVES, "waves", &[("n", &*count.to_string())]).only();
+        let rho = |t: f64| 20.0 - 3.0 * (count * t).cos();
+        let slope =
+            |t: f64, turned: f64| 3.0 * count * (count * t).sin() * (t + turned).sin() + rho(t) * (t + turned).cos();
+        let tip = -f64::acos(-0.5) / count;
+        let mut found = Vec::new();
+        for teeth in 1..=count as u32 / 2 {
+            let turned = f64::from(teeth) * PI / count;
+            let step = |k: u32| tip - tip * f64::from(k) / 1000.0;
+            for (mut from, mut to) in (0..1000).map(|k| (step(k), step(k + 1))) {
+                // from the tip on it grows and falls
+                if slope(from, turned) <= 0.0 || slope(to, turned) > 0.0 {
+                    continue;
+                }
+                for _ in 0..60 {
+                    let middle = 0.5 * (from + to);
+                    if slope(middle, turned) > 0.0 { from = middle } else { to = middle }
+                }
+                found.push((teeth, 2.0 * rho(from) * (from + turned).sin(), 2.0 * rho(from)));
+            }
+        }
+        assert_eq!(found.iter().map(|of| of.0).collect::<Vec<u32>>(), all);
+        let spans = &body.gauges.spans;
+        assert_eq!(spans.iter().map(|of| of.teeth).collect::<Vec<u32>>(), all, "{spans:?}");
+        for (span, (_, width, diameter)) in spans.iter().zip(found) {
+            // charts are within 1e-8 mm, and their slopes within 1e-6
+            assert!((span.width_mm - width).abs() < 5e-8, "{span:?} {width}");
+            assert!(span.diameters_mm.iter().all(|at| (at - diameter).abs() < 1e-5), "{span:?} {diameter}");
+        }
+    }
+}
+
+/// Where balls stand out beyond the tip only if they touch just below it, one is found that does: by the least distance of its centre from the
+/// closed surface of steep waves, outer and inner ones.
+#[test]
+fn balls_that_touch_just_below_the_tip_are_found() {
+    let outer: [f64; 5] = [18.0, 4.0, 21.5, 10.0, 1.0];
+    let inner = [33.0, 3.0, 18.5, -4.0, -1.0];
+    for [count, high, tip, twist, side] in [outer, inner] {
+        let lengths = [high, tip, if side > 0.0 { 10.0 } else { 30.0 }].map(|of| format!("{of} mm"));
+        let (n, twisted) = (count.to_string(), format!("{twist} deg/mm"));
+        let inner = if side > 0.0 { "0" } else { "1" };
+        let [a, to, bore] = &lengths;
+        let set = [("n", &*n), ("a", a), ("tip", to), ("bore", bore), ("twist", &*twisted), ("inner", inner)];
+        let (body, _) = Asked::new(WAVES, "waves", &set).only();
+        let balls = body.gauges.balls.as_ref().expect("one fits");
+        let opposite = if count % 2.0 == 0.0 { 1.0 } else { (FRAC_PI_2 / count).cos() };
+        let centre = 0.5 * (balls.over_balls_mm - side * balls.ball_mm) / opposite;
+        let away = |[t, z]: [f64; 2]| {
+            let (rho, angle) = (20.0 - side * high * (count * t).cos(), t + twist.to_radians() * z);
+            let is_beyond = side * (rho - tip) > 0.0;
+            if is_beyond { f64::INFINITY } else { (rho * angle.cos() - centre).hypot(rho * angle.sin()).hypot(z) }
+        };
+        // the least of a lattice, then of ever smaller ones about it
+        let (mut at, mut size) = ([0.0; 2], [PI / count, balls.ball_mm]);
+        for _ in 0..60 {
+            let lattice = (-40..=40).flat_map(|i| (-40..=40).map(move |j| [f64::from(i) / 40.0, f64::from(j) / 40.0]));
+            let places = lattice.map(|[i, j]| [at[0] + i * size[0], at[1] + j * size[1]]);
+            at = places.min_by(|a, b| away(*a).total_cmp(&away(*b))).expect("a lattice has places");
+            size = size.map(|size| 0.6 * size);
+        }
+        // charts are within 1e-8 mm
+        assert!((away(at) - 0.5 * balls.ball_mm).abs() < 5e-8, "{balls:?} {}", away(at));
+        assert!(side * (centre - tip) + 0.5 * balls.ball_mm > 0.0, "stands out: {balls:?}");
+        assert!(balls.diameters_mm.iter().all(|at| side * (0.5 * at - tip) < 0.0), "below the tip: {balls:?}");
+    }
+}
+
 /// Between three pins of a ring there is room for no ball that touches two of them: that is said.
 #[test]
 fn where_no_ball_fits_that_is_said() {

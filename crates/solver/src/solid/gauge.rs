@@ -62,20 +62,9 @@ struct Tooth {
 
 /// The shortest way between flank lines.
 pub(crate) struct Shortest {
-    ends: [Vector3<f64>; 2],
+    pub(crate) ends: [Vector3<f64>; 2],
     /// How far along the first line it begins beyond the middle, and the second one before, as a share.
     pub(crate) shift: f64,
-}
-
-/// The distance of two parallel planes that touch the outer flanks of some teeth.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Span {
-    /// How many teeth are between them.
-    pub teeth: u32,
-    /// mm
-    pub width: f64,
-    /// Where they touch, from the axis, mm.
-    pub rho: [f64; 2],
 }
 
 impl Body {
@@ -193,20 +182,6 @@ impl Body {
         Some(Tooth { flanks: [low, high], place: [z, rho], arc })
     }
 
-    /// The diameter of a ball that touches both flanks about where these have a distance from the axis, mm: its radii there are square to the
-    /// flanks, as far as the shortest way between them tells. `None` where a flank does not reach there, or the space is no wider towards the tip.
-    pub fn ball_touching(&self, depth: f64) -> Option<f64> {
-        let [low, high] = self.flanks();
-        let [on_low, on_high] = [self.on_flank(low, depth)?, self.on_flank(high, depth)?];
-        let way = self.across_space([Some((low, on_low, 0.0)), Some((high, on_high, 0.0))])?;
-        let (_, to_high) = touched(&self.charts()[low], [on_low, 0.5 + way.shift]);
-        let (_, to_low) = touched(&self.charts()[high], [on_high, 0.5 - way.shift]);
-        let across = way.ends[1] - way.ends[0];
-        // the centre lies a radius along either normal
-        let cosine = 0.5 * (to_high - to_low).dot(&across) / across.norm();
-        (cosine > 0.0).then(|| across.norm() / cosine)
-    }
-
     /// The shortest way across the first space, from the lower flank to the upper one.
     pub(crate) fn across_space(&self, [low, high]: [Option<(usize, f64, f64)>; 2]) -> Option<Shortest> {
         let facing = [low?, high?];
@@ -243,7 +218,7 @@ impl Body {
     }
 
     /// The share across a chart at which it has a depth, half-way along.
-    fn on_flank(&self, k: usize, wanted: f64) -> Option<f64> {
+    pub(crate) fn on_flank(&self, k: usize, wanted: f64) -> Option<f64> {
         let at = |share: f64| self.depth(self.arrangement.place(self.charts()[k].at([share, 0.5]))) - wanted;
         let (mut low, mut high) = (0.0, 1.0);
         if let Some(end) = [low, high].into_iter().find(|end| at(*end).abs() <= ENDS) {
@@ -257,33 +232,6 @@ impl Body {
             if at(low) * at(middle) > 0.0 { low = middle } else { high = middle }
         }
         Some(0.5 * (low + high))
-    }
-
-    /// The width over so many teeth; `None` where no planes touch the flanks within their ends, and of an internal gear.
-    pub fn span(&self, teeth: u32) -> Option<Span> {
-        let is_round = self.arrangement.is_closed() && self.distinct() == 1;
-        if !is_round || !self.is_external() || teeth == 0 || teeth >= self.teeth() {
-            return None;
-        }
-        let [low, high] = self.flanks();
-        let (near, far) = (&self.charts()[high], &self.charts()[low]);
-        let turned = nalgebra::Rotation3::from_axis_angle(&Vector3::z_axis(), f64::from(teeth) * self.pitch());
-        let residual = |x: &[f64]| {
-            let (p, n) = touched(near, [x[0], x[1]]);
-            let (q, m) = touched(far, [x[2], x[3]]);
-            let (q, m) = (turned * q, turned * m);
-            let apart = q - p - x[4] * m;
-            let facing = (n + m) * (q - p).norm();
-            vec![apart.x, apart.y, apart.z, facing.x, facing.y, facing.z]
-        };
-        let chord = (turned * touched(far, [0.5; 2]).0 - touched(near, [0.5; 2]).0).norm();
-        let x = solved(residual, vec![0.5, 0.5, 0.5, 0.5, chord])?;
-        // where both flanks meet in an edge, planes would touch there
-        (x[4] > TOUCHES).then(|| Span {
-            teeth,
-            width: x[4],
-            rho: [rho(near.at([x[0], x[1]])), rho(far.at([x[2], x[3]]))],
-        })
     }
 }
 

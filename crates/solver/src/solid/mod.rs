@@ -15,4 +15,5 @@ pub(crate) mod mesh;
 pub(crate) mod parts;
 pub(crate) mod section;
 pub(crate) mod sheets;
+pub(crate) mod span;
 pub(crate) mod triangles;

@@ -8,11 +8,14 @@ use crate::solve::body::result::{BallNumbers, BarNumbers, FaceNumbers, GaugeNumb
 
 /// Circles from the form diameter to the tip on which the thickness is told.
 const CIRCLES: usize = 5;
-/// Circles on which balls are looked for.
+/// Circles on which balls are looked for, and those where none of these has one that fits; of the last way to the tip each half has one more.
 const BALL_CIRCLES: usize = 9;
-/// Balls come in steps, so many to a millimetre, of which each has a few at the least.
-const BALL_STEPS: [f64; 3] = [4.0, 20.0, 100.0];
-const FINEST_STEPS: f64 = 1000.0;
+const MORE_CIRCLES: usize = 65;
+const TIP_HALVES: i32 = 16;
+/// Parts of the way from circle to circle that are told apart.
+const AWAY: f64 = 1e6;
+/// Balls come in steps, so many to a millimetre: the coarsest of which a ball has a few at the least, and finer ones where none fits.
+const BALL_STEPS: [f64; 4] = [4.0, 20.0, 100.0, 1000.0];
 const FEWEST_STEPS: f64 = 4.0;
 /// A ball that touches this near to the circle where the flanks end touches where they end, mm.
 const TOUCHES_END: f64 = 1e-6;
@@ -56,26 +59,53 @@ pub(crate) fn measured(body: &Body, ball: Option<f64>) -> GaugeNumbers {
 }
 
 /// The ball that is asked for, or the first that fits in of those that touch on a circle: on the middle one of the flanks, then on those beside
-/// it. It touches flanks alone, and stands out beyond the tip, where an anvil reaches it.
+/// it. It touches flanks alone, and stands out beyond the tip, where an anvil reaches it. Where none does, more circles are tried, which come near
+/// to the tip, where balls stand out the farthest, and finer steps.
 fn fitting(body: &Body, ball: Option<f64>) -> Option<BallGauge> {
     if let Some(ball) = ball {
         return body.ball(ball).ok();
     }
-    let (circle, form) = (circles(body, BALL_CIRCLES), body.form());
+    let form = body.form();
     let touches_flanks = |of: &BallGauge| of.rho.iter().zip(form).all(|(rho, form)| (rho - form).abs() > TOUCHES_END);
-    let mut order: Vec<usize> = (0..BALL_CIRCLES).collect();
-    order.sort_by_key(|k| k.abs_diff(BALL_CIRCLES / 2));
-    let mut balls: Vec<f64> = order.into_iter().filter_map(|k| circle_ball(body, circle[k])).collect();
-    balls.dedup();
-    let fits = |ball: f64| body.ball(ball).ok().filter(|of| touches_flanks(of) && of.beyond_tip > 0.0);
-    balls.into_iter().find_map(fits)
+    let fits = |of: &BallGauge| touches_flanks(of) && of.beyond_tip > 0.0;
+    let mut tried: Vec<f64> = Vec::new();
+    let mut first = |balls: &[f64], finer: usize| {
+        balls.iter().find_map(|ball| {
+            let ball = in_steps(*ball, finer);
+            let is_new = ball > 0.0 && !tried.contains(&ball);
+            tried.push(ball);
+            is_new.then(|| body.ball(ball).ok()).flatten().filter(fits)
+        })
+    };
+    let touching = |circle: f64| body.ball_touching(circle);
+    let few: Vec<f64> =
+        ball_circles(body, BALL_CIRCLES).into_iter().filter_map(touching).map(|of| of.diameter).collect();
+    first(&few, 0).or_else(|| {
+        let more = ball_circles(body, MORE_CIRCLES).into_iter().filter_map(touching).filter(fits);
+        let more: Vec<f64> = more.map(|of| of.diameter).collect();
+        (0..BALL_STEPS.len()).find_map(|finer| first(&more, finer))
+    })
 }
 
-/// The ball in whole steps that touches the flanks most nearly where they have a distance from the axis.
-fn circle_ball(body: &Body, rho: f64) -> Option<f64> {
-    let ball = body.ball_touching(rho)?;
-    let of_mm = BALL_STEPS.into_iter().find(|of_mm| ball * of_mm >= FEWEST_STEPS).unwrap_or(FINEST_STEPS);
-    Some((ball * of_mm).round() / of_mm).filter(|ball| *ball > 0.0)
+/// Circles of the flanks by their distance from the middle one; where there are many, also near the tip.
+fn ball_circles(body: &Body, count: usize) -> Vec<f64> {
+    let mut of_flanks = circles(body, count);
+    let (middle, [before, tip]) = (of_flanks[count / 2], [of_flanks[count - 2], of_flanks[count - 1]]);
+    if count > BALL_CIRCLES {
+        of_flanks.extend((1..=TIP_HALVES).map(|k| tip + (before - tip) * 0.5_f64.powi(k)));
+    }
+    // of two that are as far the deeper one comes first, whatever rounding leaves
+    let away = |circle: &f64| ((circle - middle) / (tip - before) * AWAY).abs().round();
+    of_flanks.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    of_flanks
+}
+
+/// A ball in whole steps, the nearest one.
+fn in_steps(ball: f64, finer: usize) -> f64 {
+    let last = BALL_STEPS.len() - 1;
+    let coarsest = BALL_STEPS.iter().position(|of_mm| ball * of_mm >= FEWEST_STEPS).unwrap_or(last);
+    let of_mm = BALL_STEPS[(coarsest + finer).min(last)];
+    (ball * of_mm).round() / of_mm
 }
 
 /// Whether spans and balls are dimensions of it: its tip is a cylinder.
