@@ -18,7 +18,7 @@ def results(job):
     measured = other.measuring_grid("concave").xyz
     return {
         "flank.solve/3": job.solve(geometry=True, sensitivity=True, limits=True),
-        "flank.deviation/1": flank.deviation(other["concave"], from_=job["concave"]),
+        "flank.deviation/2": flank.deviation(other["concave"], from_=job["concave"]),
         "flank.measure/1": grid,
         "flank.fit/1": job.fit("concave", measured, vary="m.radial_distance"),
         "flank.contact/1": pair.contact("drive_side", sensitivity=True, vhj=True),
@@ -56,7 +56,7 @@ def test_documents_keep_their_schemas(results):
 
 
 def test_documents_are_copies(results):
-    result = results["flank.deviation/1"]
+    result = results["flank.deviation/2"]
     result.document["rms_um"] = 0.0
     assert result["rms_um"] > 0 and result["rms_um"] == result.rms
     with pytest.raises(KeyError, match="rms_um"):
@@ -76,7 +76,7 @@ def test_displays_are_small(results, job):
         # the page alone is large, and is shown only by `view` and `report`
         if name not in ("flank.view/2", "flank.report/2"):
             assert sum(map(len, bundle.values())) < 200_000 + len(bundle["text/plain"]), name
-    for name in ["flank.solve/3", "flank.deviation/1", "flank.measure/1", "flank.fit/1", "flank.contact/1"]:
+    for name in ["flank.solve/3", "flank.deviation/2", "flank.measure/1", "flank.fit/1", "flank.contact/1"]:
         svg = results[name]._repr_mimebundle_()["image/svg+xml"]
         assert svg.startswith("<svg") and svg.endswith("</svg>") and "nan" not in svg, name
     shown = job._repr_mimebundle_()

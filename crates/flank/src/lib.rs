@@ -52,7 +52,7 @@ mod solve;
 mod testing;
 
 pub use compare::deviation::deviation;
-pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
+pub use compare::deviation_result::{DeviationResult, EaseOffDirection, GridPlace};
 pub use compare::fit::fit;
 pub use compare::fit::result::{
     AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, KeptSurface,

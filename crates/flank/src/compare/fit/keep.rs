@@ -10,6 +10,7 @@ use crate::compare::map::Named;
 use crate::project::failure::Failure;
 use crate::project::requests::{FitRequest, KeptPlace};
 use crate::project::session::Session;
+use crate::solve::centre::Centre;
 use crate::solve::{self, SolveOptions};
 
 /// A surface with the points of it that stay.
@@ -53,7 +54,6 @@ impl Keep {
                 "option `keep` names `{name}`, which is not sampled: its sample says where it stays; add `sample {name} {{ … }}`"
             ))
         })?;
-        let [rows, columns] = sample.counts;
         let _working = session.begin(format!("solving {name}"))?;
         let options = SolveOptions {
             geometry: false,
@@ -64,11 +64,11 @@ impl Keep {
             of_shown: false,
             session,
         };
-        let points = solve::points(job, of, sample, options).points;
-        let row = rows / 2 * columns;
+        let (sample, centre) = Centre::of_sample(sample);
+        let points = solve::points(job, of, &sample, options).points;
         let places = match place {
-            KeptPlace::Middle => vec![row + columns / 2],
-            KeptPlace::Line => vec![row, row + columns - 1],
+            KeptPlace::Middle => vec![centre.middle()],
+            KeptPlace::Line => centre.ends()[1].to_vec(),
         };
         if places.iter().any(|at| points[*at].outcome != Outcome::Solved) {
             let message =
