@@ -319,5 +319,54 @@ fn the_point_at_which_lists_meet_is_named() {
     let run = flank(&of);
     assert!(text(&run.stdout).contains("at row 1, column 3 0.000"), "{}{}", text(&run.stdout), text(&run.stderr));
     let told: serde_json::Value = serde_json::from_slice(&flank(&[&of[..], &["--json"]].concat()).stdout).unwrap();
-    assert_eq!(told["middle_at"], serde_json::json!({ "row": 1, "column": 3 }));
+    let place = serde_json::json!({ "row": 1, "column": 3 });
+    assert_eq!(told["middle_at"], place);
+    // so is the one at which corrected settings leave a surface
+    let own = formula("").replace(
+        "sample plain, bent ",
+        "sample plain { rho: 44 mm .. 55 mm by 5, z: -15 mm .. 20 mm by 5 }
+            sample bent { points: table(\"places.csv\", rho: length, z: length) }",
+    );
+    let spec = written(&out, "kept.chain", &own);
+    let of = [
+        "fit",
+        &spec,
+        "plain",
+        "--from",
+        "plain",
+        "--ease-off",
+        "slope: 1 profilewise",
+        "--vary",
+        "t.e",
+        "--keep",
+        "bent",
+    ];
+    let run = flank(&of);
+    assert!(text(&run.stdout).contains("bent at row 1, column 3"), "{}{}", text(&run.stdout), text(&run.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&flank(&[&of[..], &["--json"]].concat()).stdout).unwrap();
+    assert_eq!(told["kept"][0]["at"], place);
+}
+
+/// Studies and tolerances turn surfaces at the mean point, too: where one polynomial is e and the other nothing, circles about the axis lead from the one
+/// to the other, and the way there is 1.76375 e over 50 mm, as an angle.
+#[test]
+fn studies_and_tolerances_have_the_same_mean_point() {
+    let out = folder("deviation_elsewhere");
+    let study = out.join("study").display().to_string();
+    let spec = written(&out, "teeth.chain", &formula("{ rho: 44 mm .. 55 mm by 6, z: -15 mm .. 20 mm by 8 }"));
+    let (turn, way) = ((1.763_75e-3f64 / 50.0).to_degrees(), 49.5 * 1.763_75e-3 / 50.0);
+    let collect = ["--collect", "ease_off:bent,width:bent,plain", "--out", &study];
+    let run = flank(&[&["sweep", &spec, "--vary", "u.e=0..1e-3 by 2"][..], &collect].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let rows = support::studies::rows(&study);
+    let last = |row: usize, k: usize| rows[row][rows[row].len() - k].parse::<f64>().expect("a number");
+    // surfaces are solved to 1e-9 mm: the turn of the ease-off without e, the turn and the way of the width with it
+    assert!((last(0, 3) + turn).abs() < 2e-9 && (last(1, 2) - turn).abs() < 2e-9, "{rows:?}");
+    assert!((last(1, 1) - way).abs() < 2e-9, "{rows:?}");
+    let run = flank(&["tolerance", &spec, "bent", "--json", "--scatter", "u.e=1e-6"]);
+    let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let results = told["results"].as_array().expect("results");
+    let position = results.iter().find(|of| of["name"] == "position").expect("a position");
+    // of a thousandth, in um
+    assert!((position["standard_deviation"].as_f64().expect("a number") / way - 1.0).abs() < 1e-9, "{position}");
 }

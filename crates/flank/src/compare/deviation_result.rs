@@ -81,6 +81,13 @@ pub struct GridPlace {
     pub column: usize,
 }
 
+impl GridPlace {
+    /// A row and a column that are counted from 0.
+    pub(crate) fn of([row, column]: [usize; 2]) -> GridPlace {
+        GridPlace { row: row + 1, column: column + 1 }
+    }
+}
+
 /// The middle of a grid in words: the point that stands for it, where one does.
 pub(super) fn middle(stand_in: Option<GridPlace>) -> String {
     stand_in.map_or("the middle".to_string(), |GridPlace { row, column }| format!("row {row}, column {column}"))

@@ -125,7 +125,7 @@ impl Middle {
     }
 
     fn stand_in(&self) -> Option<GridPlace> {
-        self.stand_in.map(|[row, column]| GridPlace { row: row + 1, column: column + 1 })
+        self.stand_in.map(GridPlace::of)
     }
 }
 

@@ -6,6 +6,7 @@ use flank_solver::{AdjustableSurface, NearFoot, Outcome};
 use super::aim::Aimed;
 use super::problem::adjustable;
 use super::result::KeptSurface;
+use crate::compare::deviation_result::GridPlace;
 use crate::compare::map::Named;
 use crate::project::failure::Failure;
 use crate::project::requests::{FitRequest, KeptPlace};
@@ -19,6 +20,8 @@ pub(super) struct Keep {
     pub(super) points: Vec<Aimed>,
     name: String,
     place: KeptPlace,
+    /// Where no point is the mean point.
+    stand_in: Option<GridPlace>,
 }
 
 /// Those that are asked for.
@@ -79,8 +82,9 @@ impl Keep {
             position: points[*at].position,
             near: NearFoot { unknowns: points[*at].unknowns.clone(), distance: 0.0 },
         };
+        let stand_in = centre.stand_in().map(GridPlace::of);
         let surface = adjustable(Named { job, surface: of }, settings);
-        Ok(Keep { surface, points: places.iter().map(aimed).collect(), name: name.to_string(), place })
+        Ok(Keep { surface, points: places.iter().map(aimed).collect(), name: name.to_string(), place, stand_in })
     }
 }
 
@@ -93,6 +97,7 @@ pub(super) fn told(keeps: &[Keep], left: &[f64]) -> Vec<KeptSurface> {
         KeptSurface {
             surface: keep.name.clone(),
             is_line: keep.place == KeptPlace::Line,
+            at: keep.stand_in.filter(|_| keep.place == KeptPlace::Middle),
             off_um: 1e3 * own.iter().fold(0.0, |most: f64, off| most.max(off.abs())),
         }
     };
