@@ -75,8 +75,8 @@ pub use compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, Tr
 pub use contact::contact;
 pub use contact::result::{
     Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,
-    FlankEnd, InfluenceKind, LeadingEdge, MilledContact, MilledPattern, MountedError, PlaceOnFlank, ProvenContact,
-    TransmissionError, VhjRow,
+    ErrorGap, FlankEnd, InfluenceKind, LeadingEdge, MilledContact, MilledPattern, MountedError, PlaceOnFlank,
+    ProvenContact, TransmissionError, VhjRow,
 };
 pub use convert::convert;
 pub use convert::milling::clamp::{ClampedRates, ClampedSetting, Clamping};
