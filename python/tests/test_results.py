@@ -18,10 +18,10 @@ def results(job):
     measured = other.measuring_grid("concave").xyz
     return {
         "flank.solve/3": job.solve(geometry=True, sensitivity=True, limits=True),
-        "flank.deviation/1": flank.deviation(other["concave"], from_=job["concave"]),
+        "flank.deviation/2": flank.deviation(other["concave"], from_=job["concave"]),
         "flank.measure/1": grid,
-        "flank.fit/1": job.fit("concave", measured, vary="m.radial_distance"),
-        "flank.contact/1": pair.contact("drive_side", sensitivity=True, vhj=True),
+        "flank.fit/2": job.fit("concave", measured, vary="m.radial_distance"),
+        "flank.contact/2": pair.contact("drive_side", sensitivity=True, vhj=True),
         "flank.synthesis/1": pair.synthesis("centred"),
         "flank.tolerance/1": job.tolerance("concave", scatter={"m.radial_distance": "5 um"}, sweep=10),
         "flank.convert/2": job.convert("specs/machines/free_form.chain", positions=11),
@@ -31,7 +31,7 @@ def results(job):
         "flank.mill/1": flank.load("specs/bevel/milled_pinion.chain").mill("finish"),
         "flank.plot/2": job.plot("machine"),
         "flank.view/2": job.view(),
-        "flank.report/2": flank.load("specs/hobbing/helical_gear.chain").report(),
+        "flank.report/3": flank.load("specs/hobbing/helical_gear.chain").report(),
         "flank.derivation/2": job.derive(),
         "flank.cost/2": job.derive(cost=True),
     }
@@ -56,7 +56,7 @@ def test_documents_keep_their_schemas(results):
 
 
 def test_documents_are_copies(results):
-    result = results["flank.deviation/1"]
+    result = results["flank.deviation/2"]
     result.document["rms_um"] = 0.0
     assert result["rms_um"] > 0 and result["rms_um"] == result.rms
     with pytest.raises(KeyError, match="rms_um"):
@@ -74,9 +74,9 @@ def test_displays_are_small(results, job):
         bundle = result._repr_mimebundle_()
         assert bundle["text/plain"], name
         # the page alone is large, and is shown only by `view` and `report`
-        if name not in ("flank.view/2", "flank.report/2"):
+        if name not in ("flank.view/2", "flank.report/3"):
             assert sum(map(len, bundle.values())) < 200_000 + len(bundle["text/plain"]), name
-    for name in ["flank.solve/3", "flank.deviation/1", "flank.measure/1", "flank.fit/1", "flank.contact/1"]:
+    for name in ["flank.solve/3", "flank.deviation/2", "flank.measure/1", "flank.fit/2", "flank.contact/2"]:
         svg = results[name]._repr_mimebundle_()["image/svg+xml"]
         assert svg.startswith("<svg") and svg.endswith("</svg>") and "nan" not in svg, name
     shown = job._repr_mimebundle_()
@@ -152,7 +152,7 @@ def test_a_wanted_ease_off(job):
 
 
 def test_contacts(results):
-    contact = results["flank.contact/1"]
+    contact = results["flank.contact/2"]
     assert set(contact.flanks) == set(contact.paths) == {"pinion_concave", "gear_convex"}
     assert contact.flanks["gear_convex"]["gap"].shape == contact.flanks["gear_convex"].counts
     assert contact.error.shape == contact.turn.shape and len(contact.turn) > 60
@@ -248,7 +248,7 @@ def test_pictures(job, tmp_path):
 
 
 def test_reports_hold_the_numbers(results, tmp_path):
-    report = results["flank.report/2"]
+    report = results["flank.report/3"]
     path = report.save(tmp_path / "report.html")
     assert open(path).read() == report.html
     assert report["asked"] > 0
@@ -328,7 +328,7 @@ def test_what_is_not_done_is_shown(job):
 
 
 def test_reports_are_written_as_markdown(results, tmp_path):
-    files = results["flank.report/2"].write(tmp_path, ["html", "md"])
+    files = results["flank.report/3"].write(tmp_path, ["html", "md"])
     assert {name.rsplit(".", 1)[-1] for name in files} >= {"html", "md"}
 
 

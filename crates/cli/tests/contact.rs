@@ -35,7 +35,7 @@ fn the_published_pair_is_as_its_table_says() {
     for (case, errors) in table["cases"].as_array().expect("cases").iter().zip([&[][..], &wrong]) {
         let arguments = [&["contact", PAIR, "--no-picture", "--out", out.to_str().unwrap()][..], errors].concat();
         let found = document(&arguments, 0);
-        assert_eq!((&found["schema"], &found["kind"]), (&Value::from("flank.contact/1"), &Value::from("point")));
+        assert_eq!((&found["schema"], &found["kind"]), (&Value::from("flank.contact/2"), &Value::from("point")));
         assert_eq!(found["mounted"].as_array().expect("errors").len(), errors.len() / 2);
         let degrees = |name: &str| number(case, name).to_degrees();
         assert!((number(&found, "ratio") - number(case, "flank_contact_ratio")).abs() < 1e-9, "{}", found["ratio"]);

@@ -222,3 +222,151 @@ fn several_branches_are_listed() {
     assert_eq!(found["known"], 25, "{found}");
     assert!(found["rms_um"].as_f64().expect("a number") < 1e-3, "{found}");
 }
+
+/// A flank as a formula, and one that is turned away from it by polynomials of radius and height.
+fn formula(sample: &str) -> String {
+    format!(
+        "machine bench {{ axis lift : linear frame table frame part in table = translate_z(lift) fix lift = 0 mm }}
+        tool tooth {{
+            param e : number = 0
+            surface flank(d: length in 40 mm .. 60 mm, h: length in -25 mm .. 25 mm) {{
+                let r = d - 50 mm
+                let way = e * (r - h / 2 + r^2 / 5 mm + h^2 / 100 mm + r * h / 10 mm + r^3 / 100 mm^2)
+                let a = 0.3 * r / 50 mm * 1 rad + 0.2 * (r / 50 mm)^2 * 1 rad + h / (400 mm/rev) + way / 50 mm * 1 rad
+                at = [d * cos(a), d * sin(a), h]
+                body towards [sin(a), -cos(a), 0]
+            }}
+        }}
+        job teeth {{
+            machine b = bench
+            tool t = tooth
+            tool u = t(e: 1e-3)
+            mount t, u on b.part
+            surface plain, bent in b.table = move(t.flank, u.flank)
+            sample plain, bent {sample}
+        }}"
+    )
+}
+
+/// What `flank deviation` tells of both, as a document and as text.
+fn bent_from_plain(name: &str, sample: &str) -> (serde_json::Value, String) {
+    let out = folder(name);
+    let spec = written(&out, "teeth.chain", &formula(sample));
+    let of = ["deviation", &spec, "bent", "--reference", "plain", "--no-picture", "--out", out.to_str().unwrap()];
+    let [document, told] = [&["--json"][..], &[]].map(|option| {
+        let run = flank(&[&of[..], option].concat());
+        assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+        text(&run.stdout)
+    });
+    (serde_json::from_str(&document).expect("JSON"), told)
+}
+
+/// Turn, slopes, crownings, bias and angles of slopes wherever rows and columns lie, and however many there are: as the formulas of both flanks have
+/// them that were intersected with the normals, turned and fitted by least squares outside of this program. Both are at the mean point then, rho 49.5
+/// and z 2.5, also where no row and no column goes through it. Surfaces are solved to 1e-9 mm here, 1e-6 um.
+#[test]
+fn a_grid_has_its_numbers_wherever_its_rows_and_columns_lie() {
+    let even = |rows, columns| format!("{{ rho: 44 mm .. 55 mm by {rows}, z: -15 mm .. 20 mm by {columns} }}");
+    let uneven = "{ rho: [44 mm, 45 mm, 55 mm], z: [-15 mm, -14 mm, -13 mm, 20 mm] }".to_string();
+    let cases = [
+        (
+            even(7, 9),
+            [11.26176009608577, -12.914494784885342],
+            [-4.556604057148848, -2.3275985977802147, 27.615405908352685],
+            [3.379216599929341, -1.0061275726943448],
+        ),
+        (
+            even(6, 8),
+            [11.353706897921349, -12.89388800440907],
+            [-4.557395271774641, -2.3272282921677694, 27.609232998304606],
+            [3.4068062443382985, -1.0045221634866384],
+        ),
+        (
+            uneven,
+            [12.088100241152384, -12.486494431925399],
+            [-3.1424013911707864, -2.285063724171349, 27.746043261466863],
+            [3.627168990143402, -0.972783416377948],
+        ),
+    ];
+    for (sample, slopes, others, angles) in cases {
+        let (told, words) = bent_from_plain("deviation_lines", &sample);
+        let number = |of: &serde_json::Value| of.as_f64().expect("a number");
+        let is =
+            |of: &serde_json::Value, wanted: f64| assert!((number(of) - wanted).abs() < 1e-5, "{of} {wanted} {sample}");
+        // 1e-9 mm at 49.5 mm
+        assert!((number(&told["turn_deg"]) - 0.0020211086223299).abs() < 2e-9, "{told}");
+        is(&told["middle_um"], 0.0);
+        for k in 0..2 {
+            is(&told["directions"][k]["slope_um"], slopes[k]);
+            is(&told["directions"][k]["slope_arcmin"], angles[k]);
+            is(&told["directions"][k]["crowning_um"], others[k]);
+        }
+        is(&told["bias_um"], others[2]);
+        assert!(told["middle_at"].is_null() && words.contains("in the middle 0.000"), "{words}");
+    }
+    let (told, _) = bent_from_plain("deviation_lines", &even(2, 2));
+    assert!((told["turn_deg"].as_f64().unwrap() - 0.0020211086223299).abs() < 2e-9, "{told}");
+    assert_eq!(told["known"], 4);
+}
+
+/// A list of points has no mean point: both are made to meet at the one half-way along it, which is named.
+#[test]
+fn the_point_at_which_lists_meet_is_named() {
+    let out = folder("deviation_list");
+    written(&out, "places.csv", "rho [mm],z [mm]\n44,-15\n46,3\n55,20\n50,-2\n");
+    let spec = written(&out, "teeth.chain", &formula("{ points: table(\"places.csv\", rho: length, z: length) }"));
+    let of = ["deviation", &spec, "bent", "--reference", "plain", "--no-picture", "--out", out.to_str().unwrap()];
+    let run = flank(&of);
+    assert!(text(&run.stdout).contains("at row 1, column 3 0.000"), "{}{}", text(&run.stdout), text(&run.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&flank(&[&of[..], &["--json"]].concat()).stdout).unwrap();
+    let place = serde_json::json!({ "row": 1, "column": 3 });
+    assert_eq!(told["middle_at"], place);
+    // so is the one at which corrected settings leave a surface
+    let own = formula("").replace(
+        "sample plain, bent ",
+        "sample plain { rho: 44 mm .. 55 mm by 5, z: -15 mm .. 20 mm by 5 }
+            sample bent { points: table(\"places.csv\", rho: length, z: length) }",
+    );
+    let spec = written(&out, "kept.chain", &own);
+    let of = [
+        "fit",
+        &spec,
+        "plain",
+        "--from",
+        "plain",
+        "--ease-off",
+        "slope: 1 profilewise",
+        "--vary",
+        "t.e",
+        "--keep",
+        "bent",
+    ];
+    let run = flank(&of);
+    assert!(text(&run.stdout).contains("bent at row 1, column 3"), "{}{}", text(&run.stdout), text(&run.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&flank(&[&of[..], &["--json"]].concat()).stdout).unwrap();
+    assert_eq!(told["kept"][0]["at"], place);
+}
+
+/// Studies and tolerances turn surfaces at the mean point, too: where one polynomial is e and the other nothing, circles about the axis lead from the one
+/// to the other, and the way there is 1.76375 e over 50 mm, as an angle.
+#[test]
+fn studies_and_tolerances_have_the_same_mean_point() {
+    let out = folder("deviation_elsewhere");
+    let study = out.join("study").display().to_string();
+    let spec = written(&out, "teeth.chain", &formula("{ rho: 44 mm .. 55 mm by 6, z: -15 mm .. 20 mm by 8 }"));
+    let (turn, way) = ((1.763_75e-3f64 / 50.0).to_degrees(), 49.5 * 1.763_75e-3 / 50.0);
+    let collect = ["--collect", "ease_off:bent,width:bent,plain", "--out", &study];
+    let run = flank(&[&["sweep", &spec, "--vary", "u.e=0..1e-3 by 2"][..], &collect].concat());
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let rows = support::studies::rows(&study);
+    let last = |row: usize, k: usize| rows[row][rows[row].len() - k].parse::<f64>().expect("a number");
+    // surfaces are solved to 1e-9 mm: the turn of the ease-off without e, the turn and the way of the width with it
+    assert!((last(0, 3) + turn).abs() < 2e-9 && (last(1, 2) - turn).abs() < 2e-9, "{rows:?}");
+    assert!((last(1, 1) - way).abs() < 2e-9, "{rows:?}");
+    let run = flank(&["tolerance", &spec, "bent", "--json", "--scatter", "u.e=1e-6"]);
+    let told: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let results = told["results"].as_array().expect("results");
+    let position = results.iter().find(|of| of["name"] == "position").expect("a position");
+    // of a thousandth, in um
+    assert!((position["standard_deviation"].as_f64().expect("a number") / way - 1.0).abs() < 1e-9, "{position}");
+}

@@ -52,7 +52,7 @@ mod solve;
 mod testing;
 
 pub use compare::deviation::deviation;
-pub use compare::deviation_result::{DeviationResult, EaseOffDirection};
+pub use compare::deviation_result::{DeviationResult, EaseOffDirection, GridPlace};
 pub use compare::fit::fit;
 pub use compare::fit::result::{
     AdjustedSetting, AdjustedSettings, EaseOffNumbers, FitResult, FittedEaseOff, FittedFlank, KeptSurface,
@@ -75,8 +75,8 @@ pub use compare::trace_result::{FlankTraces, InvoluteNumbers, InvoluteSource, Tr
 pub use contact::contact;
 pub use contact::result::{
     Backlash, Clearance, ContactInfluence, ContactKind, ContactMember, ContactMiddle, ContactPattern, ContactResult,
-    FlankEnd, InfluenceKind, LeadingEdge, MilledContact, MilledPattern, MountedError, PlaceOnFlank, ProvenContact,
-    TransmissionError, VhjRow,
+    ErrorGap, FlankEnd, InfluenceKind, LeadingEdge, MilledContact, MilledPattern, MountedError, PlaceOnFlank,
+    ProvenContact, TransmissionError, VhjRow,
 };
 pub use convert::convert;
 pub use convert::milling::clamp::{ClampedRates, ClampedSetting, Clamping};

@@ -9,7 +9,7 @@ use flank_solver::{Alignment, CutBy, Outcome, SurfacePoint};
 
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::inspect;
-use crate::compare::map::{ComparedWith, DeviationMap, Named, find, is_solved, no_deviation};
+use crate::compare::map::{ComparedWith, DeviationMap, Middle, Named, find, is_solved, no_deviation};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
@@ -20,7 +20,7 @@ use crate::project::spec;
 use crate::project::spec::Origin;
 use crate::project::units;
 use crate::solve::branches;
-use crate::solve::starts::{self, Asked, Starts};
+use crate::solve::starts::{Asked, Starts};
 use crate::solve::{self, SolveOptions, bound, problem};
 
 /// What a surface is compared with.
@@ -128,28 +128,30 @@ pub(crate) fn measure<'j, 'g>(
         "`{of}` is not sampled: its sample says at which points the deviation is wanted; add `sample {of} {{ … }}`"
     ))?;
     let _working = session.begin(format!("solving {} and {}", surface.surface.name, from.surface.name))?;
-    let counts = sample.counts;
-    let (points, lost) = solved(from, (&sample.coordinates, &sample.targets(), counts), session);
+    let asked = Asked::with_centre(sample);
+    let (points, lost) = solved(from, (&sample.coordinates, &asked.targets, asked.counts), session);
     session.check()?;
     let alignment = from.alignment();
-    let starts = Starts::beside(surface.surface, (&Asked::of_sample(sample), &points), alignment);
-    let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, counts), session);
+    let starts = Starts::beside(surface.surface, (&asked, &points), alignment);
+    let (near, lost_near) = solved(surface, (&starts.coordinates, &starts.targets, asked.counts), session);
     let deviation = flank_solver::Deviation::new(&bound(surface.job, surface.surface), alignment)
         .expect("a job without errors leaves nothing unbound");
-    let middle = starts::middle(counts);
+    let middle = asked.centre.middle();
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
     let motion = both.and_then(|(point, near)| deviation.motion_to(point.position, near));
     let done = if no_align { Some(0.0) } else { motion };
     let is_opposite = both.zip(done).is_some_and(|((point, near), motion)| {
         alignment.turned(near.normal, motion).iter().zip(point.normal).map(|(a, b)| a * b).sum::<f64>() < 0.0
     });
-    let deviations = match done {
+    let deviations: Vec<Option<f64>> = match done {
         Some(motion) => deviation.map(&points, &near, motion).into_iter().map(|off| Some(1e3 * off?)).collect(),
         None => vec![None; points.len()],
     };
     let ends = [points.get(middle), near.get(middle)].map(|point| point.map(|point| point.outcome));
     let apart = done.is_none().then(|| apart([surface, from], ends));
     let ambiguous: Vec<NotDone> = lost.into_iter().chain(lost_near).collect();
+    let at_middle = Middle::new(&asked.centre, &points, &deviations);
+    let [points, near] = [points, near].map(|points| asked.centre.own(&points));
     let is_cut = |(point, near): &(&SurfacePoint, &SurfacePoint)| is_solved(point) && is_cut_away(near.outcome);
     let is_not_found = |(point, near): &(&SurfacePoint, &SurfacePoint)| {
         is_solved(point) && matches!(near.outcome, Outcome::NotConverged { .. } | Outcome::Singular)
@@ -158,7 +160,10 @@ pub(crate) fn measure<'j, 'g>(
         held: ComparedWith::Surface(surface),
         from,
         labels: sample.labels.clone(),
-        counts,
+        counts: sample.counts,
+        middle: at_middle,
+        deviations: asked.centre.own(&deviations),
+        lines: asked.centre.lines,
         cut_away: points.iter().zip(&near).filter(is_cut).count(),
         not_found: (
             points.iter().zip(&near).filter(is_not_found).count(),
@@ -167,7 +172,6 @@ pub(crate) fn measure<'j, 'g>(
         points,
         motion,
         is_moved: !no_align,
-        deviations,
         is_opposite,
         refused: if ambiguous.is_empty() { apart.into_iter().collect() } else { ambiguous },
     })

@@ -11,7 +11,7 @@ use crate::project::remark::{NotDone, Remark};
 
 /// How far one surface, or measured points, lie off a surface of the same body, of `flank deviation`: um along the normal of the latter, plus is material.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.deviation/1")]
+#[serde(tag = "schema", rename = "flank.deviation/2")]
 pub struct DeviationResult {
     /// Null where measured points are compared with `from`.
     pub surface: Option<String>,
@@ -49,6 +49,9 @@ pub struct DeviationResult {
     pub rms_um: Option<f64>,
     /// In the middle of the grid.
     pub middle_um: Option<f64>,
+    /// The point of the grid that stands for its middle: of a list, and of measured points where no row or no column goes through the mean point.
+    /// Null where the middle is the mean point, halfway between the first and the last value of both coordinates.
+    pub middle_at: Option<GridPlace>,
     /// Along the rows and the columns of the grid: the plane and the parabolas that fit best; null where they are not known.
     pub directions: [Option<EaseOffDirection>; 2],
     /// The twist that fits best.
@@ -67,6 +70,27 @@ pub struct DeviationResult {
     pub(super) positions: Vec<[f64; 3]>,
     #[serde(skip)]
     pub(super) deviations: Vec<f64>,
+}
+
+/// A point of a grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, JsonSchema)]
+pub struct GridPlace {
+    /// From 1.
+    pub row: usize,
+    /// From 1.
+    pub column: usize,
+}
+
+impl GridPlace {
+    /// A row and a column that are counted from 0.
+    pub(crate) fn of([row, column]: [usize; 2]) -> GridPlace {
+        GridPlace { row: row + 1, column: column + 1 }
+    }
+}
+
+/// The middle of a grid in words: the point that stands for it, where one does.
+pub(super) fn middle(stand_in: Option<GridPlace>) -> String {
+    stand_in.map_or("the middle".to_string(), |GridPlace { row, column }| format!("row {row}, column {column}"))
 }
 
 /// Ease-off in one direction of a grid.
@@ -142,10 +166,12 @@ impl fmt::Display for DeviationResult {
         }
         if let (Some(turn), Some(way)) = (self.turn_deg, self.turn_mm) {
             let [turn, way] = [turn, way].map(|value| fixed(value, 6));
-            writeln!(f, "  turn about z {turn} deg, {way} mm on the circle through the middle{done}")?;
+            writeln!(f, "  turn about z {turn} deg, {way} mm on the circle through {}{done}", middle(self.middle_at))?;
         }
         if let (Some(low), Some(high), Some(rms)) = (self.lowest_um, self.highest_um, self.rms_um) {
-            let middle = self.middle_um.map_or(String::new(), |middle| format!(", in the middle {}", um(middle)));
+            let at = if self.middle_at.is_some() { "at" } else { "in" };
+            let off = |off: f64| format!(", {at} {} {}", middle(self.middle_at), um(off));
+            let middle = self.middle_um.map_or(String::new(), off);
             writeln!(f, "  range        {} .. {} um, rms {}{middle}", um(low), um(high), um(rms))?;
         }
         for of in self.directions.iter().flatten() {

@@ -3,12 +3,13 @@
 use flank_solver::Inspection;
 
 use crate::compare::gauged::{Gauged, GaugedArea};
-use crate::compare::map::{ComparedWith, DeviationMap, Named};
+use crate::compare::map::{ComparedWith, DeviationMap, Middle, Named};
 use crate::project::failure::Failure;
 use crate::project::requests::DeviationRequest;
 use crate::project::session::Session;
 use crate::project::spec::Origin;
 use crate::solve;
+use crate::solve::centre::Centre;
 
 /// # Errors
 /// In words: what is wrong with the file, or why the surface has no grid.
@@ -28,15 +29,19 @@ pub(crate) fn inspect<'j, 'g>(
     gauged.check_places(of, motion.unwrap_or(0.0))?;
     let done = if request.no_align { 0.0 } else { motion.unwrap_or(0.0) };
     let deviations = inspection.deviations(positions, nominal, done);
+    let deviations: Vec<Option<f64>> = deviations.into_iter().map(|off| Some(1e3 * off?)).collect();
+    let centre = Centre::of_nodes(*counts);
     Ok(DeviationMap {
         held: ComparedWith::File { name: shown.clone(), points: positions.iter().flatten().count() },
         from: of,
         labels: gauged.labels.clone(),
         counts: *counts,
+        middle: Middle::new(&centre, nominal, &deviations),
+        lines: centre.lines,
         points: gauged.nominal,
         motion,
         is_moved: !request.no_align,
-        deviations: deviations.into_iter().map(|off| Some(1e3 * off?)).collect(),
+        deviations,
         is_opposite: false,
         refused: Vec::new(),
         cut_away: 0,

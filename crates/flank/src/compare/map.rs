@@ -5,7 +5,7 @@ use flank_draw::{Picture, PictureOptions, deviation_map};
 use flank_export::{Axis, Dataset, Field, Patch, Values, fixed};
 use flank_solver::{Alignment, EaseOff, Outcome, SurfacePoint};
 
-use crate::compare::deviation_result::{DeviationResult, EaseOffDirection};
+use crate::compare::deviation_result::{self, DeviationResult, EaseOffDirection, GridPlace};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::files::Folder;
@@ -14,7 +14,7 @@ use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::{DeviationRequest, JobSelection};
 use crate::project::spec::Origin;
 use crate::solve::blank;
-use crate::solve::starts;
+use crate::solve::centre::Centre;
 use crate::solve::{header, patch};
 
 const NOTE: &str = "along the normal, plus is material";
@@ -75,7 +75,10 @@ pub(crate) struct DeviationMap<'j, 'g> {
     pub(crate) from: Named<'j, 'g>,
     pub(crate) labels: [String; 2],
     pub(crate) counts: [usize; 2],
+    /// Where its rows and its columns lie: the values that they were sampled at.
+    pub(crate) lines: [Vec<f64>; 2],
     pub(crate) points: Vec<SurfacePoint>,
+    pub(crate) middle: Middle,
     /// Until both meet in the middle of the grid, or measured points lie nearest.
     pub(crate) motion: Option<f64>,
     /// Whether it was moved.
@@ -90,6 +93,40 @@ pub(crate) struct DeviationMap<'j, 'g> {
     pub(crate) cut_away: usize,
     /// Points at whose places the surface was not found, and the two coordinates by which it was looked for there.
     pub(crate) not_found: (usize, [String; 2]),
+}
+
+/// The middle of a grid.
+pub(crate) struct Middle {
+    /// From the z axis, mm.
+    radius: f64,
+    /// um
+    off: Option<f64>,
+    /// Way from the first to the last point of the column through it, and of the row, mm.
+    lengths: [Option<f64>; 2],
+    /// Row and column of the point that stands for the mean point.
+    stand_in: Option<[usize; 2]>,
+}
+
+impl Middle {
+    /// Of the points of a grid and their deviations, um.
+    pub(crate) fn new(centre: &Centre, points: &[SurfacePoint], deviations: &[Option<f64>]) -> Middle {
+        let off = deviations.get(centre.middle()).copied().flatten();
+        let apart = |ends: [usize; 2]| {
+            let [one, other] = ends.map(|at| points.get(at).filter(|point| is_solved(point)));
+            let squares = one?.position.into_iter().zip(other?.position).map(|(a, b)| (a - b) * (a - b));
+            Some(squares.sum::<f64>().sqrt())
+        };
+        Middle {
+            radius: points.get(centre.middle()).map_or(f64::NAN, |point| point.position[0].hypot(point.position[1])),
+            off: off.map(|off| if off.abs() < ON_IT { 0.0 } else { off }),
+            lengths: centre.ends().map(apart),
+            stand_in: centre.stand_in(),
+        }
+    }
+
+    fn stand_in(&self) -> Option<GridPlace> {
+        self.stand_in.map(GridPlace::of)
+    }
 }
 
 /// A surface by its name, with that of its job where several have it.
@@ -117,21 +154,6 @@ pub(super) fn is_solved(point: &SurfacePoint) -> bool {
 const ON_IT: f64 = 1e-6;
 
 impl DeviationMap<'_, '_> {
-    fn middle(&self) -> usize {
-        starts::middle(self.counts)
-    }
-
-    /// Distance of the middle of the grid from the z axis, mm.
-    fn middle_radius(&self) -> f64 {
-        self.points.get(self.middle()).map_or(f64::NAN, |point| point.position[0].hypot(point.position[1]))
-    }
-
-    /// The middle of the grid, um.
-    fn in_the_middle(&self) -> Option<f64> {
-        let middle = *self.deviations.get(self.middle())?;
-        middle.map(|off| if off.abs() < ON_IT { 0.0 } else { off })
-    }
-
     /// Normals that face apart.
     pub(super) fn opposite(&self) -> Option<Remark> {
         self.is_opposite.then(|| {
@@ -166,22 +188,7 @@ impl DeviationMap<'_, '_> {
     }
 
     fn ease_off(&self) -> Option<EaseOff> {
-        EaseOff::of_deviations(&self.deviations, self.counts)
-    }
-
-    /// Way from the first to the last point of the middle column, and of the middle row, mm.
-    fn lengths(&self) -> [Option<f64>; 2] {
-        let [rows, columns] = self.counts;
-        let apart = |a: usize, b: usize| {
-            let ends = [self.points.get(a)?, self.points.get(b)?];
-            let [one, other] = ends.map(|point| is_solved(point).then_some(point.position));
-            let squares = one?.into_iter().zip(other?).map(|(a, b)| (a - b) * (a - b));
-            Some(squares.sum::<f64>().sqrt())
-        };
-        [
-            apart(columns / 2, (rows - 1) * columns + columns / 2),
-            apart(rows / 2 * columns, rows / 2 * columns + columns - 1),
-        ]
+        EaseOff::over_lines(&self.deviations, self.lines.each_ref().map(Vec::as_slice))
     }
 
     fn name(&self) -> String {
@@ -193,7 +200,7 @@ impl DeviationMap<'_, '_> {
 
     /// The result, with the files that were written.
     pub(crate) fn result(&self, files: Vec<String>, origin: &Origin) -> DeviationResult {
-        let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.lengths());
+        let (ease_off, spread, lengths) = (self.ease_off(), self.spread(), self.middle.lengths);
         let direction = |k: usize| {
             ease_off.map(|of| EaseOffDirection {
                 direction: self.labels[k].clone(),
@@ -222,12 +229,13 @@ impl DeviationMap<'_, '_> {
             known: self.known().count(),
             turn_deg: turn.map(f64::to_degrees),
             turned: self.is_moved,
-            turn_mm: turn.map(|turn| self.middle_radius() * turn),
+            turn_mm: turn.map(|turn| self.middle.radius * turn),
             shift_mm: shift,
             lowest_um: spread.map(|of| of[0]),
             highest_um: spread.map(|of| of[1]),
             rms_um: spread.map(|of| of[2]),
-            middle_um: self.in_the_middle(),
+            middle_um: self.middle.off,
+            middle_at: self.middle.stand_in(),
             directions: [direction(0), direction(1)],
             bias_um: ease_off.map(|of| of.bias),
             files,
@@ -319,9 +327,10 @@ impl DeviationMap<'_, '_> {
         let name = self.held.name();
         let told = self.motion.filter(|_| self.is_moved).map(|motion| match self.from.alignment() {
             Alignment::Turn => format!(
-                "; {name} is turned by {} deg about z, {} mm on the circle through the middle",
+                "; {name} is turned by {} deg about z, {} mm on the circle through {}",
                 fixed(motion.to_degrees(), 6),
-                fixed(self.middle_radius() * motion, 6)
+                fixed(self.middle.radius * motion, 6),
+                deviation_result::middle(self.middle.stand_in())
             ),
             Alignment::Shift => format!("; {name} is shifted by {} mm along y", fixed(motion, 6)),
         });

@@ -267,8 +267,11 @@ fn curves(members: &Members<'_, '_>, rolling: &Rolling, compound: f64, transfers
         pieces(points)
     };
     let unit = fine_unit(lag.dimension);
-    let peaks =
-        composite.first().map(|_| (ends, format!("peak to peak {} {}", fixed(ends[1] - ends[0], 3), shown_unit(unit))));
+    let over = rolling.gap().map_or(String::new(), |known| {
+        format!(" over {} {}", fixed(units::shown(roll.dimension, known.width()), 3), units::symbol(roll.dimension))
+    });
+    let height = format!("peak to peak {} {}{over}", fixed(ends[1] - ends[0], 3), shown_unit(unit));
+    let peaks = composite.first().map(|_| (ends, height));
     let transfers = kinks.iter().filter_map(|roll| Some((kink(*roll)?, label(members, *roll, 3))));
     ErrorCurves {
         over: format!("{}, {}", roll.name, units::symbol(roll.dimension)),

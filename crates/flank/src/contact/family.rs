@@ -126,7 +126,7 @@ impl ContactFamily {
         let rolling = Rolling::from_first(problem, first, (self.steps, self.every), self.limits);
         let middle = rolling.middle().filter(|middle| middle.outcome == Outcome::Solved)?;
         let is_alike = rolling.vertex.is_some() == self.is_vertex && middle.state == self.state;
-        (is_alike && rolling.outside() == 0).then_some(rolling)
+        (is_alike && rolling.outside() == 0 && rolling.gap().is_none()).then_some(rolling)
     }
 
     /// Whether the mate comes nearer than not at all to some of the points that are spread over a flank.

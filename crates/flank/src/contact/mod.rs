@@ -4,6 +4,7 @@ pub(crate) mod backlash;
 pub(crate) mod drawn;
 pub(crate) mod family;
 pub(crate) mod files;
+mod gap;
 pub(crate) mod influence;
 pub(crate) mod interference;
 mod law;

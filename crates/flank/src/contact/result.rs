@@ -10,7 +10,7 @@ use crate::solve::arrays::PointGrid;
 /// Where two flanks touch while a pair rolls, and how evenly they turn each other, of `flank contact`. Angles are deg, lengths mm, unless a
 /// name ends otherwise; the error is what the contact adds to the wanted law of the driven member.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.contact/1")]
+#[serde(tag = "schema", rename = "flank.contact/2")]
 pub struct ContactResult {
     /// The job.
     #[serde(skip)]
@@ -210,12 +210,36 @@ pub struct PlaceOnFlank {
 pub struct TransmissionError {
     /// `urad` or `um`.
     pub unit: String,
-    /// The composite error's greatest less its least value.
+    /// The composite error's greatest less its least value, as far of the roll as `over` says.
     pub peak_to_peak: f64,
+    /// How far of the roll that is, deg or mm: a pitch; less where `gap` leaves some of it out; of one pair of teeth alone as far as it touches.
+    pub over: f64,
+    /// How far it is from tooth to tooth; null of one pair of teeth alone.
+    pub pitch: Option<f64>,
+    /// Between which roll positions no pair of teeth is known to touch; null where one does all over a pitch.
+    pub gap: Option<ErrorGap>,
     /// Roll positions at which one pair of teeth hands over to the next.
     pub transfers: Vec<f64>,
     /// How many pairs are at most within the film of the marking compound at a time, along the normal at their own contact.
     pub pairs: usize,
+}
+
+/// A stretch of the roll over which no pair of teeth is known to touch: from the end of one to the beginning of the next.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct ErrorGap {
+    /// Roll position.
+    pub from: f64,
+    /// Its end.
+    pub to: f64,
+    /// Whether the range of the roll ends there while the pair still touches: a wider one would tell more.
+    pub is_of_roll: bool,
+}
+
+impl TransmissionError {
+    /// Its height, where it is that of a whole pitch, or of one pair of teeth alone.
+    pub(crate) fn whole(&self) -> Option<f64> {
+        self.gap.is_none().then_some(self.peak_to_peak)
+    }
 }
 
 /// Where contact of the flanks begins or ends.

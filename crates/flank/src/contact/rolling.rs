@@ -41,6 +41,8 @@ pub(crate) struct Rolling {
     pub(crate) vertex: Option<ContactPoint>,
     /// Whether the pitch from tooth to tooth is known.
     pub(crate) has_pitch: bool,
+    /// Between which it rolls.
+    pub(super) limits: [f64; 2],
 }
 
 impl Rolling {
@@ -128,7 +130,7 @@ impl Rolling {
             }
         };
         let engagement = problem.engagement(&middle, pitch, steps, limits);
-        Rolling { problem, first, engagement, finer: None, vertex, has_pitch }
+        Rolling { problem, first, engagement, finer: None, vertex, has_pitch, limits }
     }
 
     /// The same, with a pitch looked at so closely that what is solved between positions does not depend on how many are asked for.
@@ -211,8 +213,9 @@ impl Rolling {
             false => of.point(0, step).map(|point| point.lag),
         };
         let at_transfers = transfers.iter().filter_map(|roll| self.lag_at(*roll));
+        let at_ends = self.gap().map(|ends| ends.points.map(|point| point.lag));
         let joined = |[a, b]: [f64; 2], lag: f64| [a.min(lag), b.max(lag)];
-        let mut lags = self.steps_of(of).filter_map(lag).chain(at_transfers);
+        let mut lags = self.steps_of(of).filter_map(lag).chain(at_transfers).chain(at_ends.into_iter().flatten());
         let first = lags.next()?;
         let of_positions = lags.fold([first; 2], joined);
         let between = self.steps_of(of).flat_map(|step| self.extremes(step, of_positions, transfers));

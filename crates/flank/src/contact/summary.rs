@@ -1,15 +1,17 @@
 //! The numbers of a contact, in the units that people read.
 
 use flank_chain_dsl::{Dimension, Job};
+use flank_export::fixed;
 use flank_solver::{ContactPoint, ContactState, FlankEdge};
 
+use crate::contact::gap::PairEnds;
 use crate::contact::law;
 use crate::contact::pair::Members;
 use crate::contact::pattern::GapMap;
 use crate::contact::place::{fine, fine_unit, rows_at, shares};
 use crate::contact::result::{
-    ContactKind, ContactMember, ContactMiddle, ContactResult, FlankEnd, LeadingEdge, MountedError, PlaceOnFlank,
-    TransmissionError,
+    ContactKind, ContactMember, ContactMiddle, ContactResult, ErrorGap, FlankEnd, LeadingEdge, MountedError,
+    PlaceOnFlank, TransmissionError,
 };
 use crate::contact::rolling::Rolling;
 use crate::project::answer::Timing;
@@ -105,21 +107,23 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
 
     pub(crate) fn of_rolling(&self, rolling: &Rolling, patterns: &[GapMap]) -> ContactResult {
         let handed = rolling.transfers();
+        let numbers = self.numbers(rolling, &handed);
         ContactResult {
             edges: if rolling.has_pitch { self.edges(rolling, &handed) } else { Vec::new() },
             pattern: patterns.iter().map(|map| map.pattern.clone()).collect(),
-            not_done: self.not_done(rolling, patterns),
-            ..self.numbers(rolling, &handed)
+            not_done: [self.not_done(rolling, patterns), numbers.not_done].concat(),
+            ..numbers
         }
     }
 
     /// What is known of a roll without what the marking compound shows and which edges carry.
     pub(crate) fn in_numbers(&self, rolling: &Rolling) -> ContactResult {
-        ContactResult { not_done: self.not_done(rolling, &[]), ..self.numbers(rolling, &rolling.transfers()) }
+        let numbers = self.numbers(rolling, &rolling.transfers());
+        ContactResult { not_done: [self.not_done(rolling, &[]), numbers.not_done].concat(), ..numbers }
     }
 
     fn numbers(&self, rolling: &Rolling, handed: &[f64]) -> ContactResult {
-        let ends = rolling.flank_ends();
+        let (ends, error) = (rolling.flank_ends(), self.error(rolling, handed));
         let is_of_edge = rolling.middle().is_some_and(|middle| !middle.is_of_flanks());
         let kind = rolling.state().map(|state| match state {
             _ if is_of_edge => ContactKind::Edge,
@@ -130,10 +134,11 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         ContactResult {
             kind,
             middle: rolling.middle().map(|point| self.middle(rolling, point)),
-            error: self.error(rolling, handed),
+            error: error.clone(),
             ratio: rolling.ratio(&ends),
             ends: ends.iter().map(|(way, point)| self.end(rolling, *way, point)).collect(),
-            remarks: self.remarks(rolling),
+            not_done: self.untouched(error.as_ref()).into_iter().collect(),
+            remarks: self.remarks(rolling, error.as_ref()),
             timing: Timing { points: rolling.engagement.points.len(), ..Timing::default() },
             ..self.of_nothing()
         }
@@ -171,10 +176,21 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
 
     fn error(&self, rolling: &Rolling, handed: &[f64]) -> Option<TransmissionError> {
         let [low, high] = rolling.span(handed)?;
+        let gap = rolling.gap();
+        let known = gap.as_ref().map(PairEnds::width);
+        let pitch = rolling.has_pitch.then_some(rolling.engagement.pitch);
+        let over = known.or(pitch).or_else(|| rolling.pair_ends().map(|ends| ends.width()))?;
         let pairs = rolling.steps_of(rolling.looked_at()).map(|step| self.within_film(rolling, step)).max();
         Some(TransmissionError {
             unit: fine_unit(self.unknown()).to_string(),
             peak_to_peak: self.fine(high - low),
+            over: self.turn(over),
+            pitch: pitch.map(|pitch| self.turn(pitch)),
+            gap: gap.map(|PairEnds { points: [first, last], is_of_roll }| ErrorGap {
+                from: self.turn(last.roll),
+                to: self.turn(first.roll + rolling.engagement.pitch),
+                is_of_roll: is_of_roll.contains(&true),
+            }),
             transfers: handed.iter().map(|roll| self.turn(*roll)).collect(),
             pairs: pairs.filter(|_| rolling.has_pitch).unwrap_or(1),
         })
@@ -275,6 +291,22 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         told
     }
 
+    /// Where no pair of teeth touches, though the roll goes on.
+    fn untouched(&self, error: Option<&TransmissionError>) -> Option<NotDone> {
+        let gap = error?.gap.as_ref().filter(|gap| !gap.is_of_roll)?;
+        let (contact, first) = (self.members.contact, &self.members.surfaces[0].name);
+        let unit = units::symbol(self.over());
+        let message = format!(
+            "contact {}: from `{}` {} to {} {unit} no pair of teeth touches within the range of `{}`; the error is not known there",
+            contact.name,
+            contact.roll.name,
+            fixed(gap.from, 3),
+            fixed(gap.to, 3),
+            contact.lag.name
+        );
+        Some(NotDone::new(NotDoneKind::NoContact, first, message))
+    }
+
     /// Whether the roll ends where the pair is still near its mate.
     fn is_cut_short(&self, rolling: &Rolling) -> bool {
         let engagement = &rolling.engagement;
@@ -288,7 +320,7 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
         })
     }
 
-    fn remarks(&self, rolling: &Rolling) -> Vec<Remark> {
+    fn remarks(&self, rolling: &Rolling, error: Option<&TransmissionError>) -> Vec<Remark> {
         let name = &self.members.contact.name;
         let remark =
             |kind: RemarkKind, of: &str, message: String| Remark::new(kind, of, format!("contact {name}: {message}"));
@@ -318,6 +350,15 @@ impl<'s, 'j, 'g> Summary<'s, 'j, 'g> {
                 }
             };
             told.push(remark(RemarkKind::OnePair, name, message));
+        } else if let Some(error) = error
+            && error.gap.as_ref().is_some_and(|gap| gap.is_of_roll)
+        {
+            let (roll, unit) = (&self.members.contact.roll.name, units::symbol(self.over()));
+            let message = format!(
+                "the range of `{roll}` ends before a pitch of the error is known: peak to peak is that of {} {unit}; a wider range shows the rest",
+                fixed(error.over, 3)
+            );
+            told.push(remark(RemarkKind::RollTooShort, name, message));
         } else if self.is_cut_short(rolling) {
             let message = format!(
                 "the range of `{}` ends while the pair still touches: a wider range shows it from its first touch to its last",

@@ -6,7 +6,7 @@ use flank_export::fixed;
 
 use crate::contact::result::{
     ContactInfluence, ContactKind, ContactMiddle, ContactPattern, ContactResult, InfluenceKind, MilledContact,
-    MilledPattern,
+    MilledPattern, TransmissionError,
 };
 use crate::project::units;
 
@@ -59,7 +59,12 @@ impl ContactResult {
                 _ => format!(", transfer at {over} {} {over_unit}", transfers.join(" and ")),
             };
             let (size, unit) = (fixed(error.peak_to_peak, 3), &error.unit);
-            facts.push(("error", format!("peak to peak {size} {unit} over a pitch{handed}")));
+            facts.push(("error", format!("peak to peak {size} {unit} over {}{handed}", error.over(over_unit))));
+            facts.extend(error.gap.iter().map(|gap| {
+                let [from, to] = [gap.from, gap.to].map(|turn| fixed(turn, 3));
+                let why = if gap.is_of_roll { ": the range of the roll ends" } else { "" };
+                ("", format!("no pair is known to touch from {over} {from} to {to} {over_unit}{why}"))
+            }));
         }
         if let Some(ratio) = self.ratio {
             let pairs = self.error.as_ref().map_or(String::new(), |error| {
@@ -81,7 +86,8 @@ impl ContactResult {
             facts.push(("edges", format!("{} carries from {over} {from} to {to} {over_unit}", edge.edge)));
         }
         facts.extend(self.pattern.iter().map(|pattern| ("pattern", pattern.text())));
-        facts.extend(self.milled.iter().flat_map(MilledContact::facts));
+        let known = self.error.as_ref().map_or("a pitch".to_string(), |error| error.over(over_unit));
+        facts.extend(self.milled.iter().flat_map(|milled| milled.facts(&known)));
         if let Some(backlash) = &self.backlash {
             let (unit, other) = (&self.unknown_unit, &backlash.other);
             let (least, normal, turn) = (fixed(backlash.least, 5), fixed(backlash.normal, 4), fixed(backlash.turn, 3));
@@ -207,8 +213,20 @@ impl ContactResult {
     }
 }
 
+impl TransmissionError {
+    /// How far of the roll it is known, in words.
+    fn over(&self, unit: &str) -> String {
+        let known = fixed(self.over, 3);
+        match (self.pitch, &self.gap) {
+            (Some(_), None) => "a pitch".to_string(),
+            (Some(pitch), Some(_)) => format!("{known} of a pitch of {} {unit}", fixed(pitch, 3)),
+            (None, _) => format!("{known} {unit} of the roll"),
+        }
+    }
+}
+
 impl MilledContact {
-    fn facts(&self) -> Vec<(&'static str, String)> {
+    fn facts(&self, known: &str) -> Vec<(&'static str, String)> {
         let MilledContact { milling, surface, unit, patterns, .. } = self;
         let [size, generated, least, most, bound] =
             [self.peak_to_peak, self.generated_peak_to_peak, self.ahead[0], self.ahead[1], self.at_most]
@@ -222,7 +240,7 @@ impl MilledContact {
         let [of_generated, of_milled] = patterns.each_ref().map(share);
         vec![
             ("milled", format!("{surface} by {milling}, {what}")),
-            ("", format!("error peak to peak {size} {unit} over a pitch, of the generated pair {generated}")),
+            ("", format!("error peak to peak {size} {unit} over {known}, of the generated pair {generated}")),
             ("", format!("{holds} {least} to {most} {unit} away; {bound} at the most")),
             ("", format!("pattern {of_milled} % of the milled part, as generated {of_generated} %")),
         ]

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Contact, Job, RangedVariable};
 use flank_draw::{PageContact, PageMember, PageNumber, PageTouch};
-use flank_export::{Field, Patch, Values};
+use flank_export::{Field, Patch, Values, fixed};
 use flank_expr::{ScalarEvaluator, Tape};
 use flank_solver::{ContactPoint, ContactState};
 
@@ -205,7 +205,11 @@ fn numbers(result: &ContactResult) -> Vec<PageNumber> {
     };
     let error = result.error.as_ref();
     add("contact ratio", result.ratio, "");
-    add("error, peak to peak", error.map(|error| error.peak_to_peak), error.map_or("", |error| &error.unit));
+    let over = error
+        .filter(|error| error.gap.is_some())
+        .map_or(String::new(), |error| format!(" over {} {}", fixed(error.over, 3), result.over_unit));
+    let height = error.map(|error| error.peak_to_peak);
+    add(&format!("error, peak to peak{over}"), height, error.map_or("", |error| &error.unit));
     if let (Some(middle), Some(ContactKind::Point)) = (&result.middle, result.kind) {
         add("half axes at the middle", middle.ellipse.map(|[long, _]| long), "mm");
         add("the shorter one", middle.ellipse.map(|[_, short]| short), "mm");

@@ -16,7 +16,7 @@ use crate::solve::result::{Certified, PointSummary, SmoothFace, SurfaceResult};
 
 /// What stands on the page of `flank report`: inputs, machines, results of one job. Lengths are mm, angles degrees.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.report/2")]
+#[serde(tag = "schema", rename = "flank.report/3")]
 pub struct ReportResult {
     /// The job of the spec.
     pub job: String,
@@ -50,7 +50,7 @@ pub struct ReportResult {
     pub solids: Vec<BuiltSolid>,
     /// Of the flanks of cylindrical gears, against an involute helicoid.
     pub traces: Vec<FlankTraces>,
-    /// As in flank.contact/1.
+    /// As in flank.contact/2.
     pub contacts: Vec<ContactResult>,
     /// What is milled.
     pub millings: Vec<MillResult>,

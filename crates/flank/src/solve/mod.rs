@@ -4,6 +4,7 @@ pub(crate) mod arrays;
 pub(crate) mod blank;
 pub(crate) mod body;
 pub(crate) mod branches;
+pub(crate) mod centre;
 pub(crate) mod certify;
 pub(crate) mod cut;
 pub(crate) mod dataset;

@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 use flank_chain_dsl::{Coordinate, GeneratedSurface, Sample};
 use flank_solver::{Alignment, Outcome, SurfacePoint};
 
+use crate::solve::centre::Centre;
+
 /// Coordinates that are functions of the place alone, on whatever surface it lies.
 const OF_PLACES: [&str; 5] = ["x", "y", "z", "rho", "polar_angle"];
 /// Points are given by the two coordinates that the motion of their body leaves as they are, of a turn about z radius and height, unless it moves them along their
@@ -17,12 +19,16 @@ pub(crate) struct Asked {
     pub(crate) names: [String; 2],
     pub(crate) targets: Vec<[f64; 2]>,
     pub(crate) counts: [usize; 2],
+    /// Which of them are a sample's own, and which is its middle.
+    pub(crate) centre: Centre,
 }
 
 impl Asked {
-    pub(crate) fn of_sample(sample: &Sample<'_>) -> Asked {
+    /// With the mean point, also where the sample does not ask for it.
+    pub(crate) fn with_centre(sample: &Sample<'_>) -> Asked {
         let names = sample.coordinates.each_ref().map(|coordinate| coordinate.name.clone());
-        Asked { names, targets: sample.targets(), counts: sample.counts }
+        let (sample, centre) = Centre::of_sample(sample);
+        Asked { names, targets: sample.targets(), counts: sample.counts, centre }
     }
 
     /// Whether both coordinates are functions of the place alone: the same places on any surface.
@@ -49,9 +55,9 @@ impl<'g> Starts<'g> {
             (asked.names.each_ref().map(String::as_str), asked.targets.clone())
         } else {
             let names = telling(points, alignment);
-            (names, values(names, points, middle(asked.counts)))
+            (names, values(names, points, asked.centre.middle()))
         };
-        let halfway = targets.get(middle(asked.counts)).copied().unwrap_or_default();
+        let halfway = targets.get(asked.centre.middle()).copied().unwrap_or_default();
         let coordinate = |k: usize| {
             let known = surface.coordinates().into_iter().find(|coordinate| coordinate.name == names[k]);
             surface.about(known.expect("every surface has these"), halfway[k])
@@ -60,7 +66,7 @@ impl<'g> Starts<'g> {
     }
 }
 
-/// Number of the point in the middle of a grid.
+/// Number of the point at which the search for the branch of a grid begins: in its middle, or beside that.
 pub(crate) fn middle([rows, columns]: [usize; 2]) -> usize {
     (rows / 2) * columns + columns / 2
 }

@@ -11,10 +11,11 @@ use flank_solver::Body;
 use crate::compare::deviation;
 use crate::compare::deviation_result::DeviationResult;
 use crate::compare::map::{Named, find};
-use crate::contact::result::ContactResult;
+use crate::contact::result::{ContactResult, TransmissionError};
 use crate::contact::{self, backlash, interference};
 use crate::convert::Conversion;
 use crate::project::failure::Failure;
+use crate::project::remark::RemarkKind;
 use crate::project::requests::{ContactRequest, JobSelection, Onto};
 use crate::project::spec::Origin;
 use crate::solve::body::{refusal, space};
@@ -80,7 +81,9 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         let contact = &self.tested.job.contacts[index];
         Ok(found.and_then(|result| {
             contact_number(&result, number, contact).ok_or_else(|| {
-                let why = result.not_done.first().map_or(String::new(), |why| format!(": {}", why.message));
+                let short = result.remarks.iter().find(|of| of.kind == RemarkKind::RollTooShort);
+                let why = result.not_done.first().map(|why| &why.message).or(short.map(|of| &of.message));
+                let why = why.map_or(String::new(), |why| format!(": {why}"));
                 format!("contact {} has no such number{why}", contact.name)
             })
         }))
@@ -261,7 +264,7 @@ fn contact_number(of: &ContactResult, number: ContactNumber, contact: &flank_cha
     let fine = |value: f64| if is_angle(contact.lag.dimension) { 1e-6 * value } else { 1e-3 * value };
     match number {
         ContactNumber::Ratio => of.ratio,
-        ContactNumber::PeakToPeak => of.error.as_ref().map(|error| fine(error.peak_to_peak)),
+        ContactNumber::PeakToPeak => of.error.as_ref().and_then(TransmissionError::whole).map(fine),
         ContactNumber::Turn => middle.map(|middle| shown(contact.roll.dimension, middle.turn)),
         ContactNumber::Lag => middle.map(|middle| shown(contact.lag.dimension, middle.error)),
         ContactNumber::Parabola => middle.map(|middle| {

@@ -172,19 +172,27 @@ pub struct EaseOff {
 const INDEPENDENT: f64 = 1e-6;
 
 impl EaseOff {
-    /// Of the deviations of a grid, row by row; `None` where there is none. `None` if these are too few or lie too much on a
-    /// line to say.
+    /// Of the deviations of a grid whose rows and columns lie at even distances, as [`EaseOff::over_lines`] has it.
     ///
     /// # Panics
     /// If there are not `counts[0] · counts[1]` values.
     pub fn of_deviations(deviations: &[Option<f64>], counts: [usize; 2]) -> Option<EaseOff> {
-        let [rows, columns] = counts;
-        assert_eq!(deviations.len(), rows * columns, "one value for each point of the grid");
-        let share = |k: usize, count: usize| if count > 1 { 2.0 * k as f64 / (count - 1) as f64 - 1.0 } else { 0.0 };
+        let [rows, columns] = counts.map(|count| (0..count).map(|k| k as f64).collect::<Vec<f64>>());
+        EaseOff::over_lines(deviations, [&rows, &columns])
+    }
+
+    /// Of the deviations of a grid, row by row; `None` where there is none. `lines` says where the rows and where the columns lie on the way
+    /// from the first to the last, in any unit. `None` if the deviations are too few or lie too much on a line to say.
+    ///
+    /// # Panics
+    /// If there are not as many values as rows times columns.
+    pub fn over_lines(deviations: &[Option<f64>], lines: [&[f64]; 2]) -> Option<EaseOff> {
+        let [rows, columns] = lines.map(shares);
+        assert_eq!(deviations.len(), rows.len() * columns.len(), "one value for each point of the grid");
         let known = deviations.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)));
         let (mut normal, mut right) = (nalgebra::Matrix6::zeros(), nalgebra::Vector6::zeros());
         for (at, value) in known {
-            let (v, u) = (share(at / columns, rows), share(at % columns, columns));
+            let (v, u) = (rows[at / columns.len()], columns[at % columns.len()]);
             let terms = nalgebra::Vector6::new(1.0, v, u, v * v, v * u, u * u);
             normal += terms * terms.transpose();
             right += terms * value;
@@ -194,6 +202,13 @@ impl EaseOff {
         let [_, v, u, vv, vu, uu] = factors.solve(&right).into();
         Some(EaseOff { slopes: [2.0 * v, 2.0 * u], crownings: [-vv, -uu], bias: 4.0 * vu })
     }
+}
+
+/// Places between the first, at −1, and the last, at 1; a single one, and all of them where there is no way between, at 0.
+fn shares(places: &[f64]) -> Vec<f64> {
+    let (Some(first), Some(last)) = (places.first(), places.last()) else { return Vec::new() };
+    let way = last - first;
+    places.iter().map(|place| if way == 0.0 { 0.0 } else { 2.0 * (place - first) / way - 1.0 }).collect()
 }
 
 #[cfg(test)]
@@ -266,5 +281,23 @@ mod tests {
         let numbers = |of: &EaseOff| [of.slopes[0], of.slopes[1], of.crownings[0], of.crownings[1], of.bias];
         assert!(numbers(&found).iter().zip(numbers(&wanted)).all(|(a, b)| (a - b).abs() < 1e-11), "{found:?}");
         assert_eq!(EaseOff::of_deviations(&[Some(1.0); 5], [1, 5]), None, "one row has no slope across");
+    }
+
+    /// The same parabola has the same numbers wherever its rows and columns lie, those that run downwards too: the fit leaves nothing, but the
+    /// rounding of its squares.
+    #[test]
+    fn a_parabola_has_its_own_numbers_over_lines_at_any_distances() {
+        let wanted = EaseOff { slopes: [4.0, -6.0], crownings: [50.0, 25.0], bias: 6.0 };
+        let (rows, columns) = ([44.0, 45.0, 46.0, 47.0, 55.0], [20.0, -13.0, -14.0, -15.0]);
+        let deviations = rows.iter().flat_map(|row| {
+            let v = (row - 49.5) / 5.5;
+            columns.iter().map(move |column| {
+                let u = (2.5 - column) / 17.5;
+                Some(5.0 + 2.0 * v - 3.0 * u - 50.0 * v * v - 25.0 * u * u + 1.5 * u * v)
+            })
+        });
+        let found = EaseOff::over_lines(&deviations.collect::<Vec<_>>(), [&rows, &columns]).expect("enough values");
+        let numbers = |of: &EaseOff| [of.slopes[0], of.slopes[1], of.crownings[0], of.crownings[1], of.bias];
+        assert!(numbers(&found).iter().zip(numbers(&wanted)).all(|(a, b)| (a - b).abs() < 1e-10), "{found:?}");
     }
 }

@@ -15,7 +15,8 @@ use crate::project::requests::{FitRequest, WantedEaseOff};
 use crate::project::session::Session;
 use crate::project::spec::Origin;
 use crate::solve;
-use crate::solve::starts::{self, Asked, Starts};
+use crate::solve::centre::Centre;
+use crate::solve::starts::{Asked, Starts};
 
 /// Where a surface shall be.
 pub(super) struct Aim<'j, 'g> {
@@ -99,16 +100,18 @@ impl<'j, 'g> Aim<'j, 'g> {
         let counts = table.as_ref().map_or_else(|| placed.counts(), |table| table.counts);
         let [profile, length] = placed.shares(counts);
         let sample = placed.sample(&profile, &length);
-        let points = placed.solved(&sample)?;
-        let starts = Starts::beside(of.surface, (&Asked::of_sample(&sample), &points), of.alignment());
-        let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, counts), session);
+        let asked = Asked::with_centre(&sample);
+        let points = placed.solved(&Centre::of_sample(&sample).0)?;
+        let starts = Starts::beside(of.surface, (&asked, &points), of.alignment());
+        let (near, lost) = deviation::solved(of, (&starts.coordinates, &starts.targets, asked.counts), session);
         if let Some(lost) = lost {
             return Err(Failure::NotDone(vec![lost]));
         }
         let deviation = flank_solver::Deviation::new(&solve::bound(of.job, of.surface), of.alignment())
             .expect("a job without errors leaves nothing unbound");
-        let middle = starts::middle(counts);
+        let middle = asked.centre.middle();
         let motion = deviation.motion_to(points[middle].position, &near[middle]).unwrap_or(0.0);
+        let [points, near] = [points, near].map(|points| asked.centre.own(&points));
         let wished = |at: usize, point: &SurfacePoint| match &table {
             Some(table) => {
                 let wanted = table.positions[at]?;

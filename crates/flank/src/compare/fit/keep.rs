@@ -6,10 +6,12 @@ use flank_solver::{AdjustableSurface, NearFoot, Outcome};
 use super::aim::Aimed;
 use super::problem::adjustable;
 use super::result::KeptSurface;
+use crate::compare::deviation_result::GridPlace;
 use crate::compare::map::Named;
 use crate::project::failure::Failure;
 use crate::project::requests::{FitRequest, KeptPlace};
 use crate::project::session::Session;
+use crate::solve::centre::Centre;
 use crate::solve::{self, SolveOptions};
 
 /// A surface with the points of it that stay.
@@ -18,6 +20,8 @@ pub(super) struct Keep {
     pub(super) points: Vec<Aimed>,
     name: String,
     place: KeptPlace,
+    /// Where no point is the mean point.
+    stand_in: Option<GridPlace>,
 }
 
 /// Those that are asked for.
@@ -53,7 +57,6 @@ impl Keep {
                 "option `keep` names `{name}`, which is not sampled: its sample says where it stays; add `sample {name} {{ … }}`"
             ))
         })?;
-        let [rows, columns] = sample.counts;
         let _working = session.begin(format!("solving {name}"))?;
         let options = SolveOptions {
             geometry: false,
@@ -64,11 +67,11 @@ impl Keep {
             of_shown: false,
             session,
         };
-        let points = solve::points(job, of, sample, options).points;
-        let row = rows / 2 * columns;
+        let (sample, centre) = Centre::of_sample(sample);
+        let points = solve::points(job, of, &sample, options).points;
         let places = match place {
-            KeptPlace::Middle => vec![row + columns / 2],
-            KeptPlace::Line => vec![row, row + columns - 1],
+            KeptPlace::Middle => vec![centre.middle()],
+            KeptPlace::Line => centre.ends()[1].to_vec(),
         };
         if places.iter().any(|at| points[*at].outcome != Outcome::Solved) {
             let message =
@@ -79,8 +82,9 @@ impl Keep {
             position: points[*at].position,
             near: NearFoot { unknowns: points[*at].unknowns.clone(), distance: 0.0 },
         };
+        let stand_in = centre.stand_in().map(GridPlace::of);
         let surface = adjustable(Named { job, surface: of }, settings);
-        Ok(Keep { surface, points: places.iter().map(aimed).collect(), name: name.to_string(), place })
+        Ok(Keep { surface, points: places.iter().map(aimed).collect(), name: name.to_string(), place, stand_in })
     }
 }
 
@@ -93,6 +97,7 @@ pub(super) fn told(keeps: &[Keep], left: &[f64]) -> Vec<KeptSurface> {
         KeptSurface {
             surface: keep.name.clone(),
             is_line: keep.place == KeptPlace::Line,
+            at: keep.stand_in.filter(|_| keep.place == KeptPlace::Middle),
             off_um: 1e3 * own.iter().fold(0.0, |most: f64, off| most.max(off.abs())),
         }
     };

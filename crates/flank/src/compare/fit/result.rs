@@ -3,13 +3,14 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
+use crate::compare::deviation_result::GridPlace;
 use crate::project::answer::{Answer, Timing};
 use crate::project::remark::{NotDone, Remark};
 
 /// Settings with which a flank comes nearest to what was measured or is wanted, of `flank fit`. Deviations are um along the normal, plus is
 /// material.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.fit/1")]
+#[serde(tag = "schema", rename = "flank.fit/2")]
 pub struct FitResult {
     /// The job whose settings are changed.
     pub job: String,
@@ -209,6 +210,8 @@ pub struct KeptSurface {
     pub surface: String,
     /// Whether it is kept at both ends of its row through the middle, and not in the middle alone.
     pub is_line: bool,
+    /// The point that stands for its middle: half-way along a list. Null where it is kept at the mean point, or at both ends of a row.
+    pub at: Option<GridPlace>,
     /// The largest distance by which it is off there.
     pub off_um: f64,
 }

@@ -5,6 +5,7 @@ use std::fmt;
 use flank_export::fixed;
 
 use super::result::{AdjustedSetting, AdjustedSettings, FitResult, FittedEaseOff, RangeBound, SettingsDirection};
+use crate::compare::deviation_result::GridPlace;
 use crate::project::columns::aligned;
 use crate::project::units;
 
@@ -48,7 +49,11 @@ impl fmt::Display for FitResult {
             }
         }
         for kept in &self.kept {
-            let where_it_is = if kept.is_line { "both ends of the row through its middle" } else { "its middle" };
+            let where_it_is = match (kept.is_line, kept.at) {
+                (true, _) => "both ends of the row through its middle".to_string(),
+                (false, None) => "its middle".to_string(),
+                (false, Some(GridPlace { row, column })) => format!("row {row}, column {column}"),
+            };
             writeln!(f, "  kept          {} at {where_it_is}, to {} um", kept.surface, um(kept.off_um))?;
         }
         if let Some(order) = self.order {

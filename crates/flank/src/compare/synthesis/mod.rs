@@ -18,7 +18,7 @@ use self::result::{CheckedContact, SynthesisResult, SynthesizedSetting};
 use crate::compare::fit::corrected;
 use crate::compare::fit::result::RangeBound;
 use crate::contact::pair::Members;
-use crate::contact::result::ContactResult;
+use crate::contact::result::{ContactResult, TransmissionError};
 use crate::contact::rolling::Rolling;
 use crate::contact::{Rolled, rolled};
 use crate::project::answer::Timing;
@@ -229,7 +229,7 @@ fn told(of: &ContactResult) -> CheckedContact {
         is_free: touches.is_empty() && of.edges.is_empty(),
         touches,
         edges: of.edges.clone(),
-        peak_to_peak: of.error.as_ref().map(|error| error.peak_to_peak),
+        peak_to_peak: of.error.as_ref().and_then(TransmissionError::whole),
         least_um: least,
     }
 }

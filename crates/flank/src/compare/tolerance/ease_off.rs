@@ -1,7 +1,9 @@
 //! The ease-off of a surface from itself when settings change.
 
 use flank_chain_dsl::Parameter;
-use flank_solver::{AdjustableSurface, Alignment, BoundSurface, EaseOff, Foot, FootSearch, NearFoot, Outcome};
+use flank_solver::{
+    AdjustableSurface, Alignment, BoundSurface, EaseOff, Foot, FootSearch, NearFoot, Outcome, SurfacePoint,
+};
 
 use super::quantity::Quantity;
 use crate::compare::map::Named;
@@ -9,7 +11,7 @@ use crate::compare::measure::Placed;
 use crate::project::failure::Failure;
 use crate::project::session::Session;
 use crate::solve;
-use crate::solve::starts;
+use crate::solve::centre::Centre;
 
 /// Numbers of an ease-off, in the order of [`numbers`].
 const NAMES: [&str; 6] =
@@ -27,6 +29,7 @@ pub(super) struct Flank {
     pub(super) counts: [usize; 2],
     /// The points as they are.
     feet: Vec<Option<Foot>>,
+    middle: Option<Foot>,
     /// The motion that is done until both meet in the middle, if one is.
     alignment: Option<Alignment>,
 }
@@ -42,7 +45,8 @@ impl Flank {
         let placed = Placed::new(of.job, of.surface, [0.0; 2], session)?;
         let counts = placed.counts();
         let [profile, length] = placed.shares(counts);
-        let points = placed.solved(&placed.sample(&profile, &length))?;
+        let (sample, centre) = Centre::of_sample(&placed.sample(&profile, &length));
+        let points = placed.solved(&sample)?;
         let open: Vec<_> = settings.iter().map(|setting| setting.variable).collect();
         let bindings = of.job.bindings_beside(&open);
         let bound = BoundSurface::new(&of.surface.surface, solve::followed(of.surface), &bindings);
@@ -50,13 +54,15 @@ impl Flank {
         let values: Vec<f64> = settings.iter().map(|setting| setting.value).collect();
         let now = surface.at(&values);
         let near = |unknowns: &[f64]| NearFoot { unknowns: unknowns.to_vec(), distance: 0.0 };
-        let feet = points.iter().map(|point| {
+        let foot = |point: &SurfacePoint| {
             let is_solved = point.outcome == Outcome::Solved;
             let feet = is_solved.then(|| now.feet(&[point.position], &[near(&point.unknowns)]));
             feet?.pop()?
-        });
+        };
+        let feet: Vec<Option<Foot>> = points.iter().map(foot).collect();
         let alignment = is_aligned.then(|| of.alignment());
-        let flank = Flank { feet: feet.collect(), surface, counts, alignment };
+        let middle = feet[centre.middle()].clone();
+        let flank = Flank { feet: centre.own(&feet), middle, surface, counts, alignment };
         flank.check_middle(&of.surface.name)?;
         Ok(flank)
     }
@@ -69,17 +75,13 @@ impl Flank {
         };
         let way_out = format!("the option `no_align` does without the {motion} that brings both to meet there");
         let refused = |why: &str| Err(Failure::Unsolved(format!("`{name}` {why}; {way_out}")));
-        match self.middle() {
+        match &self.middle {
             None => refused("has no point in the middle of its grid"),
             Some(middle) if lever(alignment, middle).abs() < MOVES * alignment.arc(middle.position) => {
                 refused(&format!("does not move along its normal in the middle of its grid when it is {moved}"))
             }
             Some(_) => Ok(()),
         }
-    }
-
-    fn middle(&self) -> Option<&Foot> {
-        self.feet.get(starts::middle(self.counts))?.as_ref()
     }
 
     /// Points at which it is known.
@@ -90,7 +92,7 @@ impl Flank {
     /// What scatters, each with its change by a unit of each setting; `None` if the points are too few for a parabola.
     pub(super) fn quantities(&self, settings: usize) -> Option<Vec<Quantity>> {
         let by_setting = (0..settings).map(|k| {
-            let by = match self.alignment.zip(self.middle()) {
+            let by = match self.alignment.zip(self.middle.as_ref()) {
                 Some((alignment, middle)) => -middle.moved[k] / lever(alignment, middle),
                 None => 0.0,
             };
@@ -133,7 +135,7 @@ impl Flank {
 
     /// The motion of the changed surface that brings it through the middle.
     fn met(&self, changed: &FootSearch, alignment: Alignment) -> Option<f64> {
-        let (position, mut near) = beside(self.middle()?);
+        let (position, mut near) = beside(self.middle.as_ref()?);
         let mut by = 0.0;
         for _ in 0..MOST_STEPS {
             let foot = changed.feet(&[alignment.moved(position, -by)], std::slice::from_ref(&near)).pop()??;
@@ -149,7 +151,7 @@ impl Flank {
     /// Of deviations, mm, and the motion that they take.
     fn numbers(&self, off: &[Option<f64>], by: f64) -> Option<[f64; 6]> {
         let EaseOff { slopes, crownings, bias } = EaseOff::of_deviations(off, self.counts)?;
-        let way = self.middle().zip(self.alignment).map_or(0.0, |(middle, of)| -by * of.arc(middle.position));
+        let way = self.middle.as_ref().zip(self.alignment).map_or(0.0, |(middle, of)| -by * of.arc(middle.position));
         Some([slopes[0], slopes[1], crownings[0], crownings[1], bias, way])
     }
 }

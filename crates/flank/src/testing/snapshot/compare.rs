@@ -204,7 +204,8 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
 
     /// Slopes of what moved, as angles.
     fn angles(&self, by: &[Option<f64>]) -> String {
-        let Some(of) = EaseOff::of_deviations(by, self.old.counts) else { return String::new() };
+        let lines = lines(self.old);
+        let Some(of) = EaseOff::over_lines(by, lines.each_ref().map(Vec::as_slice)) else { return String::new() };
         // labels are not kept: those of today hold for the same coordinates
         let is_same =
             |sample: &&Sample<'_>| sample.coordinates.each_ref().map(|of| &of.name) == self.old.coordinates.each_ref();
@@ -260,6 +261,18 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
                 .svg(),
         )
     }
+}
+
+/// How far the rows and the columns of a snapshot are from its first ones, in what its points were asked for by, along the lines in their middle.
+fn lines(of: &KeptSurface) -> [Vec<f64>; 2] {
+    let [rows, columns] = of.counts;
+    let at = |row: usize, column: usize| of.points[row * columns + column].at;
+    let apart = |[a, b]: [f64; 2], [c, d]: [f64; 2]| (c - a).hypot(d - b);
+    let (row, column) = (rows / 2, columns / 2);
+    [
+        (0..rows).map(|k| apart(at(0, column), at(k, column))).collect(),
+        (0..columns).map(|k| apart(at(row, 0), at(row, k))).collect(),
+    ]
 }
 
 /// An unknown that is farther away than this share of its range is another solution.

@@ -18,7 +18,6 @@ use crate::project::requests::JobSelection;
 use crate::project::session::Session;
 use crate::solve::limits;
 use crate::solve::required::RequiredNumber;
-use crate::solve::starts;
 
 /// The branch is looked for anew in each case whose number is a multiple of this, and in each whose points are not all as in the
 /// nominal one.
@@ -54,8 +53,8 @@ pub(super) enum CompiledNumbers {
     /// A point of a sample by its number.
     At(usize, usize),
     Curvature(usize, Box<SurfaceGeometry>),
-    /// A surface, another one that it is turned to, and what turns.
-    Width(Box<([Sampled; 2], Deviation)>),
+    /// A surface, another one that it is turned to, what turns, and the number of the point in the middle.
+    Width(Box<([Sampled; 2], Deviation, usize)>),
     /// With the inputs that change it.
     Contact(Box<(ContactFamily, Vec<usize>)>),
 }
@@ -270,10 +269,9 @@ impl CompiledNumbers {
                 curvature_numbers(points, points.iter().filter_map(principal))
             }
             CompiledNumbers::Width(of) => {
-                let ([near, from], compared) = &**of;
+                let ([near, from], compared, middle) = &**of;
                 let [near, points] = [case.solved(near)?, case.solved(from)?];
-                let middle = starts::middle(from.counts());
-                let both = points.get(middle).zip(near.get(middle));
+                let both = points.get(*middle).zip(near.get(*middle));
                 let both = both.filter(|(a, b)| [a, b].iter().all(|point| point.outcome == Outcome::Solved));
                 let moved = both.and_then(|(point, near)| {
                     Some((compared.with_settings(settings).motion_to(point.position, near)?, point))

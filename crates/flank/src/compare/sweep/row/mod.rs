@@ -92,7 +92,7 @@ impl Cases {
             let Collected::EaseOff(name) = of else { return Ok(None) };
             let named = find(&jobs, name)?;
             let sample = collected::sample_of(job, name)?;
-            let asked = Asked::of_sample(sample);
+            let asked = Asked::with_centre(sample);
             let (points, lost) = deviation::solved(named, (&sample.coordinates, &asked.targets, asked.counts), session);
             match lost {
                 Some(lost) => Err(Failure::NotDone(vec![lost])),

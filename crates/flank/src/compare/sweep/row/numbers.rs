@@ -6,7 +6,7 @@ use super::collected::{EASE_OFF, PLACE, STATUSES};
 use crate::compare::map::is_solved;
 use crate::contact::family::ContactNumbers;
 use crate::project::requests::{ContactRequest, JobSelection, MountingError};
-use crate::solve::starts::{self, Asked};
+use crate::solve::starts::Asked;
 
 /// Positions of a pitch at which contacts are looked at.
 const POSITIONS: u32 = 60;
@@ -14,7 +14,7 @@ const POSITIONS: u32 = 60;
 /// Kinds of lines, in the order of their columns.
 const LINES: [&str; 2] = ["singular line", "contact limit"];
 
-/// The points of a surface as the job itself has them.
+/// The points of a surface as the job itself has them, its mean point among them.
 pub(super) struct NominalPoints {
     pub(super) asked: Asked,
     pub(super) points: Vec<SurfacePoint>,
@@ -58,15 +58,15 @@ pub(super) fn ease_off_numbers(
     NominalPoints { asked, points }: &NominalPoints,
     near: &[SurfacePoint],
 ) -> Numbers {
-    let middle = starts::middle(asked.counts);
+    let middle = asked.centre.middle();
     let both = points.get(middle).zip(near.get(middle)).filter(|(point, near)| is_solved(point) && is_solved(near));
     let Some(motion) = both.and_then(|(point, near)| compared.motion_to(point.position, near)) else {
         return (vec![None; EASE_OFF.len()], Some("no_deviation".to_string()));
     };
-    let off: Vec<Option<f64>> =
-        compared.map(points, near, motion).into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
+    let off = asked.centre.own(&compared.map(points, near, motion));
+    let off: Vec<Option<f64>> = off.into_iter().map(|off| off.map(|mm| 1e3 * mm)).collect();
     let known: Vec<f64> = off.iter().flatten().copied().collect();
-    let ease_off = EaseOff::of_deviations(&off, asked.counts);
+    let ease_off = EaseOff::over_lines(&off, asked.centre.lines.each_ref().map(Vec::as_slice));
     let square = known.iter().map(|um| um * um).sum::<f64>() / known.len() as f64;
     let end = |of: fn(f64, f64) -> f64| known.iter().copied().reduce(of);
     let numbers = vec![
@@ -80,7 +80,7 @@ pub(super) fn ease_off_numbers(
         end(f64::max),
         Some(turn_deg(compared.alignment(), motion)),
     ];
-    let is_whole = known.len() == points.iter().filter(|point| is_solved(point)).count();
+    let is_whole = known.len() == asked.centre.own(points).iter().filter(|point| is_solved(point)).count();
     (numbers, (!is_whole).then(|| "no_deviation".to_string()))
 }
 

@@ -224,13 +224,15 @@ impl<'o, 'g> Opened<'o, 'g> {
     /// `None` where the places that the sample of the second surface asks for depend on the case.
     fn width(&self, [a, b]: [&str; 2]) -> Result<Option<CompiledNumbers>, Failure> {
         let (near, from, sample) = (self.surface(a)?, self.surface(b)?, sample_of(self.job, b)?);
-        let asked = Asked::of_sample(sample);
+        let asked = Asked::with_centre(sample);
         if !asked.is_of_places() {
             return Ok(None);
         }
-        let points = self.alone(from, &sample.coordinates, (sample.targets(), sample.counts)).begun(&self.nominal());
+        let points =
+            self.alone(from, &sample.coordinates, (asked.targets.clone(), asked.counts)).begun(&self.nominal());
         let both = [self.beside(near, (&asked, &[])), points];
-        Ok(Some(CompiledNumbers::Width(Box::new((both, self.deviation(near))))))
+        let middle = asked.centre.middle();
+        Ok(Some(CompiledNumbers::Width(Box::new((both, self.deviation(near), middle)))))
     }
 
     /// `None` where the inputs change how the members turn, or the flanks of the job itself do not touch.

@@ -14,6 +14,7 @@ use super::numbers::{
 use super::{Found, SolvedSample, kind_of};
 use crate::compare::deviation;
 use crate::compare::map::{Named, find};
+use crate::contact::result::TransmissionError;
 use crate::contact::rolled;
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
@@ -186,7 +187,7 @@ impl Case<'_, '_> {
         let share = |k: usize| on.and_then(|on| on.shares).map(|shares| shares[k]);
         let half = |k: usize| middle.and_then(|middle| middle.ellipse).map(|ellipse| ellipse[k]);
         let numbers = vec![
-            found.error.as_ref().map(|error| error.peak_to_peak),
+            found.error.as_ref().and_then(TransmissionError::whole),
             middle.map(|middle| middle.error),
             found.ratio,
             share(0),
@@ -196,6 +197,8 @@ impl Case<'_, '_> {
             half(0),
             half(1),
         ];
-        Ok((numbers, found.not_done.first().map(kind_of)))
+        let is_short = found.error.as_ref().is_some_and(|error| error.whole().is_none());
+        let short = is_short.then(|| "roll_too_short".to_string());
+        Ok((numbers, found.not_done.first().map(kind_of).or(short)))
     }
 }
