@@ -103,14 +103,15 @@ impl Body {
         };
         let chord = (turned * touched(far, [0.5; 2]).0 - touched(near, [0.5; 2]).0).norm();
         let starts = std::iter::once(vec![0.5, 0.5, 0.5, 0.5, chord]).chain(starts([near, far], turned));
-        let above = [self.charts()[high + 1..].iter().collect(), self.charts()[..low].iter().collect()];
+        let above: [Vec<&Chart>; 2] =
+            [self.charts()[high + 1..].iter().collect(), self.charts()[..low].iter().collect()];
         // where both flanks meet in an edge, planes would touch there
         let touches = |x: &Vec<f64>| {
             x[4] > TOUCHES
-                && is_clear(near, [x[0], x[1]], (1.0, &above[0]))
-                && is_clear(far, [x[2], x[3]], (0.0, &above[1]))
+                && is_clear(near, [x[0], x[1]], (1.0, above[0].as_slice()))
+                && is_clear(far, [x[2], x[3]], (0.0, above[1].as_slice()))
         };
-        let found = starts.filter_map(|start| solved(&residual, start)).filter(touches);
+        let found = starts.filter_map(|start| solved(residual, start)).filter(touches);
         // planes that come from outside touch the widest first; those that slide along it have it in many places
         let x = found.reduce(|widest, other| if other[4] > widest[4] + TOUCHES { other } else { widest })?;
         Some(Span { teeth, width: x[4], rho: [rho(near.at([x[0], x[1]])), rho(far.at([x[2], x[3]]))] })
@@ -140,7 +141,7 @@ fn starts([near, far]: [&Chart; 2], turned: Rotation3<f64>) -> impl Iterator<Ite
 
 /// Whether the steel of a tooth lies on one side of a plane that touches a flank: from a little below the place up to the tip, which is at a share
 /// across the flank or beyond the charts above it, and as far along as the flank is high.
-fn is_clear(chart: &Chart, [across, along]: [f64; 2], (tip, above): (f64, &Vec<&Chart>)) -> bool {
+fn is_clear(chart: &Chart, [across, along]: [f64; 2], (tip, above): (f64, &[&Chart])) -> bool {
     let (at, normal) = touched(chart, [across, along]);
     let height = (Vector3::from(chart.at([1.0, along])) - Vector3::from(chart.at([0.0, along]))).norm();
     let reach = height / Vector3::from(chart.frame([across, along])[2]).norm();
