@@ -252,7 +252,16 @@ fn formula(sample: &str) -> String {
 fn bent_from_plain(name: &str, sample: &str) -> (serde_json::Value, String) {
     let out = folder(name);
     let spec = written(&out, "teeth.chain", &formula(sample));
-    let of = ["deviation", &spec, "bent", "--reference", "plain", "--no-picture", "--out", out.to_str().unwrap()];
+    let of = [
+        "deviation",
+        &spec,
+        "bent",
+        "--reference",
+        "plain",
+        "--no-picture",
+        "--out",
+        out.to_str().expect("a path of letters"),
+    ];
     let [document, told] = [&["--json"][..], &[]].map(|option| {
         let run = flank(&[&of[..], option].concat());
         assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
@@ -315,7 +324,16 @@ fn the_point_at_which_lists_meet_is_named() {
     let out = folder("deviation_list");
     written(&out, "places.csv", "rho [mm],z [mm]\n44,-15\n46,3\n55,20\n50,-2\n");
     let spec = written(&out, "teeth.chain", &formula("{ points: table(\"places.csv\", rho: length, z: length) }"));
-    let of = ["deviation", &spec, "bent", "--reference", "plain", "--no-picture", "--out", out.to_str().unwrap()];
+    let of = [
+        "deviation",
+        &spec,
+        "bent",
+        "--reference",
+        "plain",
+        "--no-picture",
+        "--out",
+        out.to_str().expect("a path of letters"),
+    ];
     let run = flank(&of);
     assert!(text(&run.stdout).contains("at row 1, column 3 0.000"), "{}{}", text(&run.stdout), text(&run.stderr));
     let told: serde_json::Value = serde_json::from_slice(&flank(&[&of[..], &["--json"]].concat()).stdout).unwrap();

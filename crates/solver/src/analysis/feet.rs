@@ -114,7 +114,7 @@ fn seeds(surface: &BoundSurface<'_>) -> Result<Vec<SurfacePoint>, TapeError> {
         let mut placed = [0.0; 6];
         evaluator.run(&solution.unknowns, &mut placed);
         let [x, y, z, nx, ny, nz] = placed;
-        (is_left && Outcome::Solved.of_placed(&placed) == Outcome::Solved).then(|| SurfacePoint {
+        (is_left && Outcome::Solved.of_placed(&placed) == Outcome::Solved).then_some(SurfacePoint {
             outcome: Outcome::Solved,
             unknowns: solution.unknowns,
             position: [x, y, z],
