@@ -159,6 +159,12 @@ fn a_stretch_without_a_contact_is_told_and_its_ends_are_solved() {
         // its other end was told in thousandths
         assert!((number(&error["gap"]["to"]) - 4.588).abs() < 1e-3, "{positions} {error}");
         assert_eq!(error["gap"]["is_of_roll"], false, "{error}");
+        // one edge carries to where no pair touches any more, and one from where the next pair does
+        let edges = found["edges"].as_array().expect("edges");
+        for (end, of_gap) in [("to", "from"), ("from", "to")] {
+            let is_there = |edge: &Value| (number(&edge[end]) - number(&error["gap"][of_gap])).abs() < 1e-9;
+            assert_eq!(edges.iter().filter(|edge| is_there(edge)).count(), 1, "{positions} {end} {:?}", edges);
+        }
         let told = found["not_done"].to_string();
         assert!(
             told.contains("no_contact") && told.contains("no pair of teeth touches within the range of `lag`"),

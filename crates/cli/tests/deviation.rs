@@ -248,20 +248,17 @@ fn formula(sample: &str) -> String {
     )
 }
 
+/// The command that compares both.
+fn bent_against_plain<'c>(spec: &'c str, out: &'c std::path::Path) -> [&'c str; 8] {
+    let out = out.to_str().expect("a path of letters");
+    ["deviation", spec, "bent", "--reference", "plain", "--no-picture", "--out", out]
+}
+
 /// What `flank deviation` tells of both, as a document and as text.
 fn bent_from_plain(name: &str, sample: &str) -> (serde_json::Value, String) {
     let out = folder(name);
     let spec = written(&out, "teeth.chain", &formula(sample));
-    let of = [
-        "deviation",
-        &spec,
-        "bent",
-        "--reference",
-        "plain",
-        "--no-picture",
-        "--out",
-        out.to_str().expect("a path of letters"),
-    ];
+    let of = bent_against_plain(&spec, &out);
     let [document, told] = [&["--json"][..], &[]].map(|option| {
         let run = flank(&[&of[..], option].concat());
         assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
@@ -324,16 +321,7 @@ fn the_point_at_which_lists_meet_is_named() {
     let out = folder("deviation_list");
     written(&out, "places.csv", "rho [mm],z [mm]\n44,-15\n46,3\n55,20\n50,-2\n");
     let spec = written(&out, "teeth.chain", &formula("{ points: table(\"places.csv\", rho: length, z: length) }"));
-    let of = [
-        "deviation",
-        &spec,
-        "bent",
-        "--reference",
-        "plain",
-        "--no-picture",
-        "--out",
-        out.to_str().expect("a path of letters"),
-    ];
+    let of = bent_against_plain(&spec, &out);
     let run = flank(&of);
     assert!(text(&run.stdout).contains("at row 1, column 3 0.000"), "{}{}", text(&run.stdout), text(&run.stderr));
     let told: serde_json::Value = serde_json::from_slice(&flank(&[&of[..], &["--json"]].concat()).stdout).unwrap();

@@ -257,7 +257,7 @@ impl Rolling {
     }
 
     /// Edges that carry over a pitch, each with the roll positions from which to which it does, no farther than the pitch goes: looked for at all
-    /// positions and on both sides of the transfers, and solved between them.
+    /// positions, on both sides of the transfers and where no pair touches, and solved between them.
     pub(crate) fn leading(&self, transfers: &[f64]) -> Vec<(Vec<FlankEdge>, [f64; 2])> {
         let of = self.looked_at();
         let edges = |point: &ContactPoint| (!point.is_of_flanks()).then(|| point.edges.clone());
@@ -270,8 +270,14 @@ impl Rolling {
         let beside = BESIDE * of.pitch / of.steps as f64;
         let at_transfers =
             transfers.iter().flat_map(|roll| [roll - beside, roll + beside]).map(|roll| (roll, at(roll)));
-        let mut all: Vec<(f64, Option<Vec<FlankEdge>>)> = steps.clone().map(at_step).chain(at_transfers).collect();
-        let end = self.roll_of(of, steps.end);
+        let [begin, end] = [steps.start, steps.end].map(|step| self.roll_of(of, step));
+        // where a pair leaves before the next one comes, its ends are solved
+        let at_gap = self.gap().into_iter().flat_map(|ends| ends.points).map(|point| {
+            let pitches = ((point.roll - begin) / of.pitch).floor();
+            (point.roll - pitches * of.pitch, edges(&point))
+        });
+        let mut all: Vec<(f64, Option<Vec<FlankEdge>>)> =
+            steps.map(at_step).chain(at_transfers).chain(at_gap).collect();
         all.push((end, at(end)));
         all.sort_by(|a, b| a.0.total_cmp(&b.0));
         let between = |of: &Option<Vec<FlankEdge>>, mut inside: f64, mut outside: f64| {

@@ -115,3 +115,19 @@ pub(crate) fn as_given(dimension: Dimension, value: f64) -> String {
 pub(crate) fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_range_that_is_told_holds_its_ends() {
+        let ends =
+            |low, high| [(low, false), (high, true)].map(|(end, upper)| end_digits(Dimension::LENGTH, end, 4, upper));
+        assert_eq!(ends(-0.12067, 2.132612), ["-0.1207", "2.1327"]);
+        assert_eq!(ends(0.12067, -2.132612), ["0.1206", "-2.1326"]);
+        // what needs no rounding stays, whatever its binary digits are
+        assert_eq!(ends(0.1, 0.3), ["0.1000", "0.3000"]);
+        assert_eq!(end_digits(Dimension::ANGLE, (-120.0f64).to_radians(), 4, false), "-120.0000");
+    }
+}
