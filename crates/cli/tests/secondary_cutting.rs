@@ -347,6 +347,112 @@ job crown {
     assert!(positioned.len() >= 90 && cut >= 6, "{cut} of {}", positioned.len());
 }
 
+/// A worm wheel under a hob whose thread has straight sides in its axial section. x runs from the hob's axis to the wheel's, z along the
+/// hob.
+struct WormHob {
+    teeth: f64,
+    /// mm for each rad.
+    pitch: f64,
+    radius: f64,
+    tip: f64,
+    center_distance: f64,
+    /// deg
+    spindle: [f64; 2],
+}
+
+impl WormHob {
+    const ALPHA: f64 = 20.0;
+
+    fn spec(&self) -> String {
+        let WormHob { teeth, pitch, radius, tip, center_distance, spindle: [from, to] } = self;
+        // half the axial gap at the reference radius
+        let half = pitch * std::f64::consts::FRAC_PI_2;
+        let slope = Self::ALPHA.to_radians().tan();
+        let half_tip = half - (tip - radius) * slope;
+        let [bottom, top] = [0.93, 1.2].map(|share| share * pitch * teeth);
+        let surface = |name: &str, sign: f64| {
+            format!(
+                "    surface {name}(r: length in {} mm .. {tip} mm, theta: angle in -1100 deg .. 1100 deg) {{
+        at = [r * cos(theta), r * sin(theta), {pitch} mm/rad * theta + {sign} * ({half} mm - (r - {radius} mm) * {slope})]
+        body towards [0, 0, {}]
+    }}
+",
+                2.0 * radius - tip,
+                -sign
+            )
+        };
+        format!(
+            "machine wheel_hobbing {{
+    axis B : rotary
+    frame base
+    frame hob in base = rotate_z(B)
+    frame wheel in base = translate_x({center_distance} mm) rotate_x(-90 deg) rotate_z(-B / {teeth})
+}}
+tool hob {{
+{}{}    surface tip(w: length in -{half_tip} mm .. {half_tip} mm, theta: angle in -1100 deg .. 1100 deg) {{
+        at = [{tip} mm * cos(theta), {tip} mm * sin(theta), {pitch} mm/rad * theta + w]
+        body towards [-cos(theta), -sin(theta), 0]
+    }}
+}}
+job wheel {{
+    machine m = wheel_hobbing
+    tool h = hob
+    mount h on m.hob
+    motion spindle : angle in {from} deg .. {to} deg
+    drive m.B = spindle
+    surface plus in m.wheel = envelope(h.plus, over: spindle)
+    surface minus in m.wheel = envelope(h.minus, over: spindle)
+    sample plus {{ rho: {bottom} mm .. {top} mm by 31, z: -6 mm .. 6 mm by 9, keep spindle: -20 deg .. 340 deg }}
+    sample minus {{ rho: {bottom} mm .. {top} mm by 31, z: -6 mm .. 6 mm by 9, keep spindle: -340 deg .. 20 deg }}
+}}
+",
+            surface("plus", 1.0),
+            surface("minus", -1.0)
+        )
+    }
+
+    /// How deep a point of the wheel comes into the thread, across its sides in the axial section.
+    fn depth(&self, row: &Row) -> f64 {
+        let WormHob { teeth, pitch, radius, tip, center_distance, spindle } = self;
+        let ([x, y], z) = (row.position, row.z);
+        let lead = std::f64::consts::TAU * pitch;
+        let slope = Self::ALPHA.to_radians().tan();
+        let depth = |spindle: f64| {
+            let (sine, cosine) = (-spindle / teeth).sin_cos();
+            let at = [center_distance + cosine * x - sine * y, z, -(sine * x + cosine * y)];
+            let (r, azimuth) = (at[0].hypot(at[1]), at[1].atan2(at[0]) - spindle);
+            let turns = ((at[2] - pitch * azimuth) / lead).round();
+            let along = at[2] - pitch * azimuth - turns * lead;
+            (lead / 4.0 - (r - radius) * slope - along.abs()).min(tip - r)
+        };
+        deepest(depth, spindle.map(f64::to_radians))
+    }
+}
+
+/// A hob turns many times while the wheel turns once: less its turning, along which the thread slides in itself, the work passes slowly.
+#[test]
+fn a_thread_cuts_the_teeth_of_its_wheel_in_other_turns() {
+    let at = folder("secondary_thread");
+    let mut told = [0, 0];
+    for (teeth, spindle) in [(5.0, 540.0), (6.0, 900.0), (7.0, 720.0)] {
+        let hob = WormHob {
+            teeth,
+            pitch: 2.0,
+            radius: 20.0,
+            tip: 24.5,
+            center_distance: 20.0 + 2.0 * teeth,
+            spindle: [-spindle, spindle],
+        };
+        let spec = written(&at, &format!("wheel_{teeth}.chain"), &hob.spec());
+        let rows = solved("secondary_thread_points", &spec, "wheel", &[]);
+        for row in rows.iter().filter(|row| row.status == "solved" || row.reason.contains("in another position")) {
+            held_against(row, hob.depth(row));
+            told[usize::from(row.status == "undercut")] += 1;
+        }
+    }
+    assert!(told[0] > 300 && told[1] > 50, "{told:?}");
+}
+
 /// The worm of a wheel with 50 teeth meshes over eight whole turns. Places whole turns apart have the same velocity and lie beside
 /// neighbouring threads; the way from one to the other leads around the worm, not through a thread.
 #[test]
@@ -387,6 +493,9 @@ fn what_was_not_looked_at_is_said() {
         bevel.len() > 1 && bevel.iter().all(|(_, unseen)| unseen.as_str().is_none_or(|why| !why.contains("too long"))),
         "{bevel:?}"
     );
+    // few teeth, which nearly everything about the hob may cut
+    let few = told("specs/bodies/beveloid_body.chain", &["--set", "teeth=6", "--set", "cone_angle=-15.6411 deg"]);
+    assert!(few.iter().all(|(_, unseen)| unseen.as_str().is_none_or(|why| !why.contains("too long"))), "{few:?}");
     let wheel = told("specs/double_envelope/hourglass_worm_wheel.chain", &[]);
     assert!(wheel[0].1.is_null() && wheel[1].1.as_str().unwrap().contains("generated itself"), "{wheel:?}");
     let forms = told("tests/surfaces/specs/ring_by_equation.chain", &[]);

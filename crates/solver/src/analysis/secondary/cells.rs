@@ -83,6 +83,13 @@ pub(super) struct Near {
     block: usize,
 }
 
+impl Near {
+    /// The same with other parameters.
+    pub(super) fn with_start(self, at: [f64; 2]) -> Near {
+        Near { at, ..self }
+    }
+}
+
 impl Corner {
     /// The place halfway to the next corner along a parameter, of the cubic through both with their tangents.
     fn halfway(&self, other: &Corner, along: usize, steps: [f64; 2]) -> Vector3<f64> {

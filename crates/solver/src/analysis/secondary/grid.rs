@@ -127,10 +127,10 @@ impl SecondaryCutting {
 
 impl<'c> Judge<'c> {
     fn new(cutting: &'c SecondaryCutting, middle: &SurfacePoint, is_own: bool) -> Judge<'c> {
-        let mut poses = Poses::new(cutting);
         let count = cutting.ranges.len();
         let motions = cutting.motions(middle, is_own);
         let position = Vector3::from(middle.position);
+        let mut poses = Poses::new(cutting, &motions, &position);
         let values: Vec<Vec<f64>> = (0..count).map(|k| poses.values(&motions, k, &position)).collect();
         let fixed =
             if count == 1 { values[0].iter().map(|value| poses.at(&[*value], 0)).collect() } else { Vec::new() };

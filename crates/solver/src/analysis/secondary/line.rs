@@ -6,8 +6,11 @@ use nalgebra::{Matrix3, Vector3};
 use crate::analysis::secondary::SecondaryCutting;
 use crate::analysis::secondary::cells::Near;
 use crate::analysis::secondary::net::{Foot, Found, Piece, Seen, Side};
+use crate::analysis::secondary::slip::Slip;
 use crate::equations::runner::Runner;
 
+/// A tool slides in itself between two places by no more than this angle, rad.
+pub(super) const MOST_SLIP: f64 = std::f64::consts::PI;
 /// A point less deep in the steel than this, mm, is only touched: points are good to this.
 const TOUCH: f64 = 1e-9;
 /// How much longer than by the speeds at its ends a way may be.
@@ -23,7 +26,7 @@ const PAST: f64 = 0.01;
 /// Steps in which the greatest depth is looked for.
 const STEPS_DOWN: usize = 30;
 
-/// The pose of the work in the tool, and its derivative by the motion.
+/// The pose of the work in the tool, and its derivative by the motion, less what the tool slides in itself meanwhile.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pose {
     rotation: [Matrix3<f64>; 2],
@@ -35,6 +38,7 @@ pub(super) struct Pose {
 pub(super) struct Place {
     pub(super) motion: f64,
     point: Vector3<f64>,
+    /// Less that of the tool's own slip.
     velocity: Vector3<f64>,
     speed: f64,
 }
@@ -68,22 +72,60 @@ pub(super) struct Poses<'c> {
     cutting: &'c SecondaryCutting,
     evaluator: Runner<'c>,
     out: Vec<f64>,
+    /// By how much of an angle the tool slides in itself while each motion runs, about.
+    slides: Vec<f64>,
 }
 
 impl<'c> Poses<'c> {
-    pub(super) fn new(cutting: &'c SecondaryCutting) -> Poses<'c> {
+    /// `point` of the work, generated at `motions`, stands for all.
+    pub(super) fn new(cutting: &'c SecondaryCutting, motions: &[f64], point: &Vector3<f64>) -> Poses<'c> {
         let out = vec![0.0; cutting.pose.output_count()];
-        Poses { cutting, evaluator: cutting.pose.runner(), out }
+        let slides = vec![0.0; cutting.ranges.len()];
+        let mut poses = Poses { cutting, evaluator: cutting.pose.runner(), out, slides };
+        if let Some(slip) = &cutting.slip {
+            poses.slides = (0..cutting.ranges.len()).map(|k| poses.slide(slip, motions, k, point)).collect();
+        }
+        poses
+    }
+
+    /// How fast a point turns with the slip at the middle of several parts of a motion's range, on the average.
+    fn slide(&mut self, slip: &Slip, motions: &[f64], running: usize, point: &Vector3<f64>) -> f64 {
+        const PARTS: usize = 8;
+        let range = self.cutting.ranges[running];
+        let mut at = motions.to_vec();
+        let mut sum = 0.0;
+        for k in 0..PARTS {
+            at[running] = range.at((k as f64 + 0.5) / PARTS as f64);
+            let place = self.at(&at, running).place(at[running], point);
+            let along = slip.velocity(&place.point);
+            sum += place.velocity.dot(&along) / along.norm_squared();
+        }
+        sum / PARTS as f64
+    }
+
+    /// The angle of the slip from one place to another while a motion runs.
+    pub(super) fn slipped(&self, running: usize, from: &Place, to: &Place) -> f64 {
+        self.slides[running] * (to.motion - from.motion)
     }
 
     /// At values of the motions, with the derivative by the one of a number.
     pub(super) fn at(&mut self, motions: &[f64], running: usize) -> Pose {
         self.evaluator.run(motions, &mut self.out);
-        Pose::of(running, |k| self.out[k])
+        self.pose(running, |k| self.out[k])
+    }
+
+    /// From the outputs of the tape.
+    fn pose(&self, running: usize, out: impl Fn(usize) -> f64) -> Pose {
+        let mut pose = Pose::of(running, out);
+        if let Some(slip) = &self.cutting.slip {
+            pose.slow(slip, self.slides[running]);
+        }
+        pose
     }
 
     /// The same at many values of the motions.
     pub(super) fn at_each(&mut self, motions: &[Vec<f64>], running: usize) -> Vec<Pose> {
+        let (slip, slide) = (self.cutting.slip.as_ref(), self.slides[running]);
         let Some(lanes) = self.evaluator.lanes() else {
             return motions.iter().map(|motions| self.at(motions, running)).collect();
         };
@@ -95,6 +137,9 @@ impl<'c> Poses<'c> {
             lanes.run_first(together.len());
             poses.extend((0..together.len()).map(|lane| Pose::of(running, |k| lanes.output(k)[lane])));
         }
+        if let Some(slip) = slip {
+            poses.iter_mut().for_each(|pose| pose.slow(slip, slide));
+        }
         poses
     }
 
@@ -105,7 +150,8 @@ impl<'c> Poses<'c> {
         const BEND: f64 = 0.3;
         let range = self.cutting.ranges[running];
         let mut at = motions.to_vec();
-        let mut count = FEWEST;
+        let slide = self.slides[running];
+        let mut count = FEWEST.max((slide.abs() * range.width() / MOST_SLIP).ceil() as usize).min(MOST);
         loop {
             let values: Vec<f64> = (0..=count).map(|k| range.at(k as f64 / count as f64)).collect();
             let places: Vec<Place> = values
@@ -119,9 +165,12 @@ impl<'c> Poses<'c> {
             // places whole turns apart have one velocity, but lie not where it leads
             let bends = |pair: &[Place]| {
                 let span = pair[1].motion - pair[0].motion;
-                let led = 0.5 * span * (pair[0].velocity + pair[1].velocity);
-                (pair[1].velocity - pair[0].velocity).norm() > most
-                    || (pair[1].point - pair[0].point - led).norm() > most * span
+                let back = -slide * span;
+                let slid = self.cutting.slip.map(|slip| slip.turned(&pair[1].velocity, back));
+                let velocity = slid.unwrap_or(pair[1].velocity);
+                let point = self.cutting.slip.map_or(pair[1].point, |slip| slip.moved(&pair[1].point, back));
+                let led = 0.5 * span * (pair[0].velocity + velocity);
+                (velocity - pair[0].velocity).norm() > most || (point - pair[0].point - led).norm() > most * span
             };
             if count >= MOST || !places.windows(2).any(bends) {
                 return values;
@@ -138,6 +187,16 @@ impl Pose {
         let vector = |from: usize| Vector3::from_fn(|row, _| out(from + row));
         let [own, derived] = [0, 12 * (1 + running)];
         Pose { rotation: [matrix(own), matrix(derived)], translation: [vector(own + 9), vector(derived + 9)] }
+    }
+
+    /// Less the velocity of a tool that slides in itself by an angle for each unit of the motion.
+    fn slow(&mut self, slip: &Slip, slide: f64) {
+        for column in 0..3 {
+            let along = slip.turning(&self.rotation[0].column(column).into_owned());
+            let slower = self.rotation[1].column(column) - slide * along;
+            self.rotation[1].set_column(column, &slower);
+        }
+        self.translation[1] -= slide * slip.velocity(&self.translation[0]);
     }
 
     pub(super) fn place(&self, motion: f64, point: &Vector3<f64>) -> Place {
@@ -284,7 +343,7 @@ impl Way<'_, '_> {
             return None;
         }
         let is_entered = clear_a.min(clear_b) < -TOUCH;
-        let is_same = self.seen.piece.are_beside(foot_a.at, foot_b.at);
+        let is_same = self.are_beside((&a.place, foot_a), (&b.place, foot_b));
         if is_entered {
             let is_on = side_a == Some([0, 0]) && side_b == Some([0, 0]);
             let is_through = (clear_a - clear_b).abs() <= way;
@@ -313,6 +372,12 @@ impl Way<'_, '_> {
         }
     }
 
+    /// Whether feet at two places are no farther apart than neighbouring cells, but for the slip between.
+    fn are_beside(&self, (a, foot_a): (&Place, Foot), (b, foot_b): (&Place, Foot)) -> bool {
+        let back = self.poses.slipped(self.running, b, a);
+        self.seen.piece.are_beside(foot_a.at, self.seen.piece.slid(foot_b.at, back))
+    }
+
     /// Whether a way, mm, whose ends lie on both sides of the piece's continuation beyond one of its ends may go through that end.
     fn goes_through_end(&self, (foot_a, foot_b): (Foot, Foot), way: f64) -> bool {
         let past = |foot: Foot| self.seen.piece.past(foot.at);
@@ -331,11 +396,14 @@ impl Way<'_, '_> {
     /// them.
     fn is_clear_of_both(&mut self, a: &mut Sight, b: &mut Sight) -> bool {
         let way = a.way_to(b);
-        if way > APART * (a.near.on - b.near.on).norm() {
+        let forth = self.poses.slipped(self.running, &a.place, &b.place);
+        let on = self.poses.cutting.slip.map_or(a.near.on, |slip| slip.moved(&a.near.on, forth));
+        if way > APART * (on - b.near.on).norm() {
             return false;
         }
         let mut on = |part: &Sight, other: &Sight| {
-            let mut moved = Sight { near: part.near, found: None, ..*other };
+            let at = self.seen.piece.slid(part.near.at, self.poses.slipped(self.running, &part.place, &other.place));
+            let mut moved = Sight { near: part.near.with_start(at), found: None, ..*other };
             (self.foot(&mut { *part }), self.foot(&mut moved))
         };
         let (own_a, b_at_a) = on(a, b);
@@ -353,7 +421,7 @@ impl Way<'_, '_> {
             let slopes = [foot_a.rate(places[0].velocity) * span, foot_b.rate(places[1].velocity) * span];
             let nearer = clear[0].min(clear[1]);
             return nearer > TOUCH
-                && self.seen.piece.are_beside(foot_a.at, foot_b.at)
+                && self.are_beside((places[0], foot_a), (places[1], foot_b))
                 && least_of_cubic(clear, slopes) > CLEAR * nearer;
         }
         matches!((side_a, side_b), (Some(a), Some(b)) if (0..2).any(|k| a[k] * b[k] > 0))

@@ -8,12 +8,14 @@ mod cells;
 mod grid;
 mod line;
 mod net;
+mod slip;
 mod tape;
 
 use flank_expr::geometry::Chain;
 use flank_expr::{Expr, TapeError};
 
 use crate::analysis::secondary::net::Piece;
+use crate::analysis::secondary::slip::{Slip, Touch};
 use crate::analysis::secondary::tape::PlaceTape;
 use crate::equations::solution::Range;
 use crate::surface::bound::BoundSurface;
@@ -26,6 +28,8 @@ pub struct SecondaryCutting {
     /// Of the motions: the work's pose in the tool, then its derivative by each motion; rotation row by row, then translation.
     pose: PlaceTape,
     ranges: Vec<Range>,
+    /// Along which all pieces slide in themselves.
+    slip: Option<Slip>,
 }
 
 impl SecondaryCutting {
@@ -49,22 +53,20 @@ impl SecondaryCutting {
         let derived = motions.iter().flat_map(|&motion| own.iter().map(move |entry| entry.derivative(motion)));
         let outputs: Vec<Expr<'g>> = own.iter().copied().chain(derived).collect();
         let piece = |(number, surface): &(usize, BoundSurface<'g>)| Piece::new(*number, surface);
-        Ok(SecondaryCutting {
-            pieces: pieces.iter().map(piece).collect::<Result<_, _>>()?,
-            pose: PlaceTape::new(&outputs, motions)?,
-            ranges,
-        })
+        let (pieces, slip) = netted(pieces.iter().map(piece).collect::<Result<_, _>>()?);
+        Ok(SecondaryCutting { pieces, pose: PlaceTape::new(&outputs, motions)?, ranges, slip })
     }
 
     /// The same of a tool and motions that were given while settings were open ([`Graph::with_settings`](flank_expr::Graph::with_settings)),
     /// with these values of them.
     #[must_use]
     pub fn with_settings(&self, values: &[f64]) -> SecondaryCutting {
-        SecondaryCutting {
-            pieces: self.pieces.iter().map(|piece| piece.with_settings(values)).collect(),
-            pose: self.pose.with_settings(values),
-            ranges: self.ranges.clone(),
-        }
+        let (pieces, slip) = if self.pieces.iter().any(Piece::uses_settings) {
+            netted(self.pieces.iter().map(|piece| piece.with_settings(values)).collect())
+        } else {
+            (self.pieces.clone(), self.slip)
+        };
+        SecondaryCutting { pieces, pose: self.pose.with_settings(values), ranges: self.ranges.clone(), slip }
     }
 
     /// The same along the same motions with other `ranges`.
@@ -82,4 +84,15 @@ impl SecondaryCutting {
         self.pieces.iter().for_each(Piece::translate);
         self.pose.translate();
     }
+}
+
+/// The pieces of a tool with their nets, and what all of them slide along.
+fn netted(pieces: Vec<Piece>) -> (Vec<Piece>, Option<Slip>) {
+    let touches: Vec<Vec<Touch>> = pieces.iter().map(|piece| piece.seen().touches()).collect();
+    let along = |slip: Slip| Some((touches.iter().map(|own| slip.along(own)).collect::<Option<Vec<_>>>()?, slip));
+    let (slides, slip) = match Slip::of(&touches.concat()).and_then(along) {
+        Some((slides, slip)) => (slides, Some(slip)),
+        None => (vec![[0.0; 2]; pieces.len()], None),
+    };
+    (pieces.into_iter().zip(slides).map(|(piece, slide)| piece.netted(slide)).collect(), slip)
 }

@@ -6,6 +6,8 @@ use flank_expr::{Expr, InstructionSet, LANES, TapeError};
 use nalgebra::Vector3;
 
 use crate::analysis::secondary::cells::{Cell, Cells, Corner, Near};
+use crate::analysis::secondary::line::MOST_SLIP;
+use crate::analysis::secondary::slip::Touch;
 use crate::analysis::secondary::tape::PlaceTape;
 use crate::equations::runner::Runner;
 use crate::equations::solution::{ROUNDING, Range};
@@ -39,6 +41,8 @@ pub(super) struct Piece {
     /// How fast it runs with either parameter where it does so most, mm.
     speeds: [f64; 2],
     steps: [f64; 2],
+    /// How either parameter runs while the tool slides in itself by an angle.
+    slide: [f64; 2],
     cells: Arc<Cells>,
     /// The least and the greatest coordinates of its cells.
     hull: [Vector3<f64>; 2],
@@ -81,6 +85,7 @@ pub(super) struct Seen<'p> {
 }
 
 impl Piece {
+    /// Without its net.
     pub(super) fn new(number: usize, surface: &BoundSurface<'_>) -> Result<Piece, TapeError> {
         let bound = surface.surface();
         let [first, second] = surface.ranges() else { panic!("a piece has two unknowns") };
@@ -88,37 +93,46 @@ impl Piece {
         let parts = [bound.position, bound.normal];
         let slopes = parts.iter().flat_map(|part| bound.unknowns.iter().map(|&p| part.derivative(p)));
         let outputs: Vec<Expr<'_>> = parts.iter().copied().chain(slopes).flat_map(|vector| vector.0).collect();
-        let tape = PlaceTape::new(&outputs, &bound.unknowns)?;
-        Ok(Piece::of_tape(number, tape, ranges))
+        Ok(Piece::of_tape(number, PlaceTape::new(&outputs, &bound.unknowns)?, ranges))
     }
 
     fn of_tape(number: usize, tape: PlaceTape, ranges: [Range; 2]) -> Piece {
-        let mut piece = Piece {
-            number,
-            tape,
-            ranges,
-            speeds: [0.0; 2],
-            steps: [0.0; 2],
-            cells: Arc::default(),
-            hull: [Vector3::zeros(); 2],
-        };
-        let (cells, steps) = piece.seen().cells();
-        let hull = cells.iter().map(Cell::hull).reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])]);
-        piece.hull = hull.unwrap_or_default();
-        let speed = |k: usize| cells.iter().map(|cell| 2.0 * cell.halves[k].norm() / steps[k]).fold(0.0, f64::max);
-        piece.speeds = [0, 1].map(speed);
-        (piece.cells, piece.steps) = (Arc::new(Cells::new(&cells)), steps);
-        piece
+        let (cells, hull) = (Arc::default(), [Vector3::zeros(); 2]);
+        Piece { number, tape, ranges, speeds: [0.0; 2], steps: [0.0; 2], slide: [0.0; 2], cells, hull }
     }
 
-    /// The same with other values of the settings; the net is made anew only if it depends on them.
-    pub(super) fn with_settings(&self, values: &[f64]) -> Piece {
-        let tape = self.tape.with_settings(values);
-        if self.tape.uses_settings() {
-            Piece::of_tape(self.number, tape, self.ranges)
-        } else {
-            Piece { tape, cells: self.cells.clone(), ..*self }
+    /// With its net, for a tool that slides in itself.
+    pub(super) fn netted(mut self, slide: [f64; 2]) -> Piece {
+        self.slide = slide;
+        let (cells, steps) = self.seen().cells();
+        let hull = cells.iter().map(Cell::hull).reduce(|a, b| [a[0].inf(&b[0]), a[1].sup(&b[1])]);
+        let speed = |k: usize| cells.iter().map(|cell| 2.0 * cell.halves[k].norm() / steps[k]).fold(0.0, f64::max);
+        Piece {
+            speeds: [0, 1].map(speed),
+            steps,
+            cells: Arc::new(Cells::new(&cells)),
+            hull: hull.unwrap_or_default(),
+            ..self
         }
+    }
+
+    pub(super) fn uses_settings(&self) -> bool {
+        self.tape.uses_settings()
+    }
+
+    /// The same with other values of the settings, without its net.
+    pub(super) fn with_settings(&self, values: &[f64]) -> Piece {
+        Piece::of_tape(self.number, self.tape.with_settings(values), self.ranges)
+    }
+
+    /// A place on the piece after it slid in itself by an angle.
+    pub(super) fn slid(&self, at: [f64; 2], by: f64) -> [f64; 2] {
+        [0, 1].map(|k| at[k] + by * self.slide[k])
+    }
+
+    /// How far beyond either end of a range the piece is followed.
+    fn reach(&self) -> [f64; 2] {
+        self.slide.map(|slide| slide.abs() * MOST_SLIP)
     }
 
     pub(super) fn translate(&self) {
@@ -156,7 +170,8 @@ impl Piece {
         if step.along.is_nan() {
             return Some(Found::Lost);
         }
-        let margins = self.ranges.map(|range| BEYOND * range.width());
+        let reach = self.reach();
+        let margins = [0, 1].map(|k| BEYOND * self.ranges[k].width() + reach[k]);
         let after = self.beyond(step.to, margins);
         (after != [0, 0] && self.beyond(at, margins) != [0, 0]).then_some(Found::Beyond(after))
     }
@@ -209,8 +224,7 @@ impl Seen<'_> {
         let ranges = self.piece.ranges;
         let mut turns = [0.0f64; 2];
         for place in 0..PROBES * PROBES {
-            let shares = [place / PROBES, place % PROBES].map(|k| (k as f64 + 0.5) / PROBES as f64);
-            let at = [0, 1].map(|k| ranges[k].at(shares[k]));
+            let at = [0, 1].map(|k| ranges[k].at(probe(place)[k]));
             self.run(at);
             let tangents = [2, 3].map(|k| self.vector(k).normalize());
             for k in 0..2 {
@@ -226,11 +240,24 @@ impl Seen<'_> {
         turns
     }
 
-    fn cells(&mut self) -> (Vec<Cell>, [f64; 2]) {
+    /// Some places of the piece.
+    pub(super) fn touches(&mut self) -> Vec<Touch> {
         let ranges = self.piece.ranges;
+        let touch = |place: usize| {
+            self.run([0, 1].map(|k| ranges[k].at(probe(place)[k])));
+            Touch { point: self.vector(0), normal: self.vector(1), slopes: [self.vector(2), self.vector(3)] }
+        };
+        (0..PROBES * PROBES).map(touch).collect()
+    }
+
+    fn cells(&mut self) -> (Vec<Cell>, [f64; 2]) {
+        let (ranges, reach) = (self.piece.ranges, self.piece.reach());
         let counts = self.turns().map(|turn| ((turn / TURN).ceil() as usize).clamp(1, MOST_CELLS));
         let steps = [0, 1].map(|k| ranges[k].width() / counts[k] as f64);
-        let corner = |i: usize, j: usize| [ranges[0].low + i as f64 * steps[0], ranges[1].low + j as f64 * steps[1]];
+        let before = [0, 1].map(|k| (reach[k] / steps[k]).ceil());
+        let counts = [0, 1].map(|k| counts[k] + 2 * before[k] as usize);
+        let low = [0, 1].map(|k| ranges[k].low - before[k] * steps[k]);
+        let corner = |i: usize, j: usize| [low[0] + i as f64 * steps[0], low[1] + j as f64 * steps[1]];
         let mut corners = Vec::new();
         for i in 0..=counts[0] {
             for j in 0..=counts[1] {
@@ -334,6 +361,11 @@ impl Seen<'_> {
     }
 }
 
+/// The shares of both ranges at which one of the probes is.
+fn probe(number: usize) -> [f64; 2] {
+    [number / PROBES, number % PROBES].map(|k| (k as f64 + 0.5) / PROBES as f64)
+}
+
 /// A foot that is looked for.
 #[derive(Clone, Copy)]
 struct Open {
@@ -431,6 +463,7 @@ mod tests {
         let surface = geometry::Surface::parametric(unknowns, position, false);
         let ranges = [Range { low: -10.0, high: 10.0 }, Range { low: -12.0, high: 12.0 }];
         let piece = Piece::new(0, &BoundSurface::new(&surface, ranges.to_vec(), &[])).expect("nothing is unbound");
+        let piece = piece.netted([0.0; 2]);
         let place = |k: usize| {
             let [u, v] = [ranges[0].at((k % 41) as f64 / 40.0), ranges[1].at((k / 41) as f64 / 40.0)];
             Vector3::new(u + 0.8 * v, v, 0.011 * u * u - 0.033 * v * v + 0.009 * u * v)
