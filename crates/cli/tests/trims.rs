@@ -202,3 +202,154 @@ fn what_the_other_pin_covers_is_trimmed() {
         }
     }
 }
+
+/// Two racks that make one gear.
+const RACKS: &str = "
+machine planer {
+    param r : length
+    axis C : rotary
+    axis Y : linear
+    frame bed
+    frame table in bed = rotate_z(C)
+    frame rack in bed = translate(r, Y, 0 mm)
+}
+tool rack {
+    param alpha : angle
+    param tip : length
+    param rounding : length
+    param root : length
+    param shift : length in -100 mm .. 100 mm
+    let half = 2.356194490192345 mm
+    let end = (tip - rounding * (1 - sin(alpha))) / cos(alpha)
+    let center = half - (tip - rounding) * tan(alpha) - rounding / cos(alpha)
+    surface flank_plus, flank_minus(u: length in -root / cos(alpha) .. end, v: length in -5 mm .. 5 mm) for side in [1, -1] {
+        at = [shift - u * cos(alpha), side * (half - u * sin(alpha)), v]
+        body towards [0, -side, 0]
+    }
+    surface fillet_plus, fillet_minus(a: angle in alpha .. 90 deg, v: length in -5 mm .. 5 mm) for side in [1, -1] {
+        at = [shift - (tip - rounding) - rounding * sin(a), side * (center + rounding * cos(a)), v]
+        body towards [sin(a), -side * cos(a), 0]
+    }
+    surface land(share: number in -1 .. 1, v: length in -5 mm .. 5 mm) {
+        at = [shift - tip, share * center, v]
+        body towards [1, 0, 0]
+    }
+}
+job gear {
+    machine m = planer(r: RADIUS mm)
+    tool t = rack(FIRST)
+    tool k = rack(SECOND)
+    mount t on m.rack
+    mount k on m.rack
+    motion roll : angle in -60 deg .. 60 deg
+    drive m.C, m.Y = roll, RADIUS mm * roll
+    surface flank in m.table = envelope(t.flank_plus, over: roll)
+    surface flank_plus, flank_minus, fillet_plus, fillet_minus, land in m.table =
+        envelope(k.flank_plus, k.flank_minus, k.fillet_plus, k.fillet_minus, k.land, over: roll)
+    TRIMS
+    sample flank { u: -t.root / cos(t.alpha) * 0.99 .. t.end * 0.99 by 46, z: -1 mm .. 1 mm by 2 }
+}";
+
+struct Rack {
+    /// rad
+    alpha: f64,
+    tip: f64,
+    rounding: f64,
+    root: f64,
+    shift: f64,
+}
+
+impl Rack {
+    fn arguments(&self) -> String {
+        let Rack { alpha, tip, rounding, root, shift } = self;
+        format!("alpha: {alpha} rad, tip: {tip} mm, rounding: {rounding} mm, root: {root} mm, shift: {shift} mm")
+    }
+
+    /// How deep the tooth of the rack comes at the most into a point of a gear, mm: on its whole way, by 2.1e-5 rad.
+    fn depth(&self, radius: f64, [x, y]: [f64; 2]) -> f64 {
+        let half = 0.75 * std::f64::consts::PI;
+        let (sine, cosine) = self.alpha.sin_cos();
+        let center =
+            [self.tip - self.rounding, half - (self.tip - self.rounding) * sine / cosine - self.rounding / cosine];
+        let depth = |step: u32| {
+            let roll = (f64::from(step) / 50_000.0 - 1.0) * std::f64::consts::FRAC_PI_3;
+            let below = radius + self.shift - (roll.cos() * x - roll.sin() * y);
+            let aside = (roll.sin() * x + roll.cos() * y - radius * roll).abs();
+            let flat = ((half - aside) * cosine - below * sine).min(self.tip - below);
+            let [down, out] = [below - center[0], aside - center[1]];
+            let is_round = out > 0.0 && down > out * sine / cosine;
+            let depth = if is_round { flat.min(self.rounding - down.hypot(out)) } else { flat };
+            if below < -self.root { f64::NEG_INFINITY } else { depth }
+        };
+        (0..=100_000).map(depth).fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// A flank enters what another tool takes through its flank and leaves it through its rounding: beyond that it stays. A land meets the flank,
+/// too, and bounds the same body.
+#[test]
+fn what_leaves_a_body_may_enter_it_again() {
+    let cases = [
+        (
+            36.0,
+            Rack {
+                alpha: 0.4958255383780585,
+                tip: 3.753226551724058,
+                rounding: 0.49241157384317996,
+                root: 1.906315039314884,
+                shift: -0.26104535993027145,
+            },
+            Rack {
+                alpha: 0.31453700763950954,
+                tip: 3.086134338285172,
+                rounding: 0.38119435676289154,
+                root: 1.5134589114758419,
+                shift: 0.38610521966013955,
+            },
+            &["flank_plus", "fillet_plus"][..],
+        ),
+        (
+            25.5,
+            Rack {
+                alpha: 0.4999277378071509,
+                tip: 2.5220846110607216,
+                rounding: 1.023569270441799,
+                root: 2.736798327876583,
+                shift: 0.2534961678374821,
+            },
+            Rack {
+                alpha: 0.19733487332829128,
+                tip: 1.8848409524398182,
+                rounding: 0.2816868421286136,
+                root: 1.7997945907695443,
+                shift: 0.4146262186684053,
+            },
+            &["land", "flank_plus", "fillet_plus", "flank_minus", "fillet_minus"][..],
+        ),
+    ];
+    let folder = folder("racks");
+    for (radius, own, other, by) in cases {
+        let trims: Vec<String> = by.iter().map(|by| format!("trim flank by {by}")).collect();
+        let spec = RACKS.replace("RADIUS", &radius.to_string()).replace("TRIMS", &trims.join("\n    "));
+        let spec = spec.replace("FIRST", &own.arguments()).replace("SECOND", &other.arguments());
+        let (file, out) = (written(&folder, "gear.chain", &spec), folder.to_str().expect("a plain path"));
+        let run = flank(&["solve", &file, "--no-picture", "--out", out]);
+        let table =
+            std::fs::read_to_string(folder.join("gear.csv")).unwrap_or_else(|_| panic!("{}", text(&run.stderr)));
+        let mut rows = table.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect::<Vec<_>>());
+        let names = rows.next().expect("a head");
+        let [surface, status, x, y] = ["surface", "status", "x", "y"]
+            .map(|name| names.iter().position(|title| *title == name).expect("a column"));
+        let mut told = [0, 0];
+        for row in rows.filter(|row| row[surface] == "flank") {
+            let at = [x, y].map(|column| row[column].parse().expect("a number"));
+            let depth = other.depth(radius, at);
+            let is_taken = row[status] == "trimmed";
+            assert!(is_taken || row[status] == "solved", "{}", row[status]);
+            // what lies between is touched, as far as the steps of the roll tell
+            assert!(if is_taken { depth > -1e-6 } else { depth < 1e-6 }, "{depth} at {at:?}, told {}", row[status]);
+            told[usize::from(is_taken)] += 1;
+        }
+        assert!(told[0] > 40 && told[1] > 20, "{told:?}");
+    }
+}

@@ -57,7 +57,9 @@ fn listed_with(
         let values: Vec<String> = unknowns.iter().zip(&branch.unknowns).map(|(u, x)| named(u, *x)).collect();
         let [x, y, z] = branch.position.map(|x| fixed(x, DECIMALS));
         let keep = keeps.get(number).map_or_else(String::new, |keep| format!(": `{}`", keep.text()));
-        format!("{}: {}{}, at [{x}, {y}, {z}] mm{keep}", number + 1, place(number), values.join(", "))
+        let is_in = unknowns.iter().zip(&branch.unknowns).all(|(u, x)| (u.low..=u.high).contains(x));
+        let outside = if is_in { "" } else { ", outside of the ranges there" };
+        format!("{}: {}{}, at [{x}, {y}, {z}] mm{outside}{keep}", number + 1, place(number), values.join(", "))
     });
     let choice = match keeps {
         [] => "No `keep` of an unknown tells them apart: narrow the ranges".to_string(),

@@ -65,15 +65,21 @@ impl Function {
         least / (self.high - self.low)
     }
 
-    /// From halfway to the branch below to halfway to the one above.
+    /// From halfway to the branch below to halfway to the one above. Where there is none, to the end of the ranges; a branch that lies outside
+    /// of them at the places where it was looked for may come from afar.
     fn around(&self, branches: &[Vec<Vec<f64>>], number: usize) -> Keep {
         let (own_low, own_high) = self.span(&branches[number]);
         let others = branches.iter().enumerate().filter(|(k, _)| *k != number).map(|(_, points)| self.span(points));
         let turn = |by: f64| others.clone().map(move |(low, high)| (low + by, high + by)).filter(|_| self.is_turn);
         let below = others.clone().chain(turn(-TAU)).map(|span| span.1).filter(|x| *x < own_low).reduce(f64::max);
         let above = others.clone().chain(turn(TAU)).map(|span| span.0).filter(|x| *x > own_high).reduce(f64::min);
-        let low = below.map_or(self.low, |x| 0.5 * (x + own_low));
-        let high = above.map_or(self.high, |x| 0.5 * (x + own_high));
+        let width = self.high - self.low;
+        let [lowest, highest] = [
+            if own_low < self.low { own_low - width } else { self.low },
+            if own_high > self.high { own_high + width } else { self.high },
+        ];
+        let low = below.map_or(lowest, |x| 0.5 * (x + own_low));
+        let high = above.map_or(highest, |x| 0.5 * (x + own_high));
         Keep { of: self.of.clone(), dimension: self.dimension, low, high }
     }
 }
@@ -140,4 +146,27 @@ pub(crate) fn proposed(
 pub(crate) fn against(unknowns: &[RangedVariable<'_>], own: &SurfacePoint, other: &SurfacePoint) -> Option<Keep> {
     let branches = [own, other].map(|point| vec![point.unknowns.clone()]);
     chosen(unknowns, &branches).pop()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn angle(low: f64, high: f64) -> Function {
+        let is_turn = high - low == TAU;
+        Function { of: "a".to_string(), dimension: Dimension::ANGLE, weights: vec![1.0], low, high, is_turn }
+    }
+
+    /// Two branches that lie below a range at the place where they were looked for: each keep holds its own and leaves out the other.
+    #[test]
+    fn keeps_hold_branches_outside_of_the_ranges() {
+        for (low, high, branches) in [(0.3, 1.5, [0.2, -0.1]), (-1.5, -0.3, [0.2, -0.1]), (0.0, 1.0, [-0.1, 1.1])] {
+            let branches = branches.map(|x| vec![vec![x]]);
+            for (number, own) in branches.iter().enumerate() {
+                let keep = angle(low, high).around(&branches, number);
+                let holds = |points: &Vec<Vec<f64>>| (keep.low..=keep.high).contains(&points[0][0]);
+                assert!(keep.low < keep.high && holds(own) && !holds(&branches[1 - number]), "{}", keep.text());
+            }
+        }
+    }
 }

@@ -177,9 +177,7 @@ pub(crate) fn points<'j, 'g>(
         session.sample(of, sample, JUDGED, || judged(of, sample, session.sample(of, sample, SOLVED, solved)))
     } else {
         let mut found = session.sample(of, sample, SOLVED, solved);
-        trims.extend(surface.trimmed_by.iter().enumerate().map(|(number, &by)| {
-            trims::cut(job, [surface, &job.surfaces[by]], sample, &mut found.points, (number, session))
-        }));
+        trims = trims::cut(job, surface, sample, &mut found.points, session);
         judged(of, sample, found)
     };
     let FoundPoints { problem, points, effort, positions } = found;
@@ -249,9 +247,7 @@ pub(crate) fn points_of_branch<'g>(
     if points.iter().any(|point| point.outcome != Outcome::Solved) {
         return None;
     }
-    for (number, &by) in surface.trimmed_by.iter().enumerate() {
-        trims::cut(job, [surface, &job.surfaces[by]], sample, &mut points, (number, session));
-    }
+    trims::cut(job, surface, sample, &mut points, session);
     let found = FoundPoints { problem, points, effort, positions: None };
     Some(judged((job, surface), sample, found).points)
 }

@@ -131,7 +131,8 @@ mod tests {
     fn thread(relief: f64, pitch: f64) -> impl Fn([f64; 2]) -> Vector3<f64> {
         let axis = Unit::new_normalize(Vector3::new(1.0, 2.0, 2.0));
         move |[turn, u]: [f64; 2]| {
-            let profile = Vector3::new(2.0, -2.0, 1.0).normalize() * (20.0 + u - relief * turn) + *axis * (0.36 * u + 0.02 * u * u);
+            let profile = Vector3::new(2.0, -2.0, 1.0).normalize() * (20.0 + u - relief * turn)
+                + *axis * (0.36 * u + 0.02 * u * u);
             Vector3::new(3.0, -2.0, 1.0) + Rotation3::from_axis_angle(&axis, turn) * profile + *axis * (pitch * turn)
         }
     }

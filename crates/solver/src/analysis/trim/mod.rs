@@ -5,6 +5,7 @@ mod deeper;
 use flank_expr::{Expr, TapeError};
 
 use crate::analysis::intersection::{Intersection, Line, Meeting};
+use crate::analysis::secondary::SecondaryCutting;
 use crate::equations::solution::{CutBy, Outcome};
 use crate::surface::SurfaceProblem;
 use crate::surface::bound::BoundSurface;
@@ -13,21 +14,23 @@ use crate::surface::points::SurfacePoint;
 /// A point nearer than this to a meeting on its line, in the line's own unit, lies on the edge and stays.
 const ON_EDGE: f64 = 1e-9;
 
-/// A surface that is cut away by another one.
-#[derive(Clone, Copy, Debug)]
+/// A surface that is cut away by others which bound one body together.
+#[derive(Clone, Debug)]
 pub struct Trim<'s, 'g> {
-    /// The surface that loses points, and the one that takes them; both in one frame.
-    pub surfaces: [&'s BoundSurface<'g>; 2],
+    /// The surface that loses points.
+    pub surface: &'s BoundSurface<'g>,
+    /// Those that take them, in the same frame, each with what marks the points that go, as [`CutBy::Other`].
+    pub by: Vec<(&'s BoundSurface<'g>, usize)>,
+    /// The tool that makes them, if they are several: where it cuts one of them away itself, that one does not bound the body.
+    pub tool: Option<SecondaryCutting>,
     /// By which points of the first are asked for.
     pub coordinates: [Expr<'g>; 2],
-    /// What marks the points that go, as [`CutBy::Other`].
-    pub number: usize,
 }
 
 impl<'g> Trim<'_, 'g> {
-    /// Marks the points of a grid that the second surface cuts away, and gives back where the two meet on the grid, as [`trim`] does.
-    /// Where they meet nowhere, the second has taken all that it lies deeper than in the material; points of it beside the first's are
-    /// solved by `points_of_by`, given two functions of its unknowns.
+    /// Marks the points of a grid that the others cut away, and gives back where each of them meets the surface on the grid, as [`trim`]
+    /// does. One that it meets nowhere has taken all that it lies deeper than in the material; points of it beside the surface's are solved by
+    /// `points_of_by`, given its place among the others and two functions of its unknowns.
     ///
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor has a value.
@@ -38,12 +41,18 @@ impl<'g> Trim<'_, 'g> {
         &self,
         points: &mut [SurfacePoint],
         (targets, counts): (&[[f64; 2]], [usize; 2]),
-        points_of_by: &dyn Fn([Expr<'g>; 2]) -> SurfaceProblem,
-    ) -> Result<[Vec<Meeting>; 2], TapeError> {
-        let intersection = Intersection::new(self.surfaces, self.coordinates)?;
-        let meetings = trim(points, targets, counts, &intersection, self.number);
-        if meetings.iter().all(Vec::is_empty) {
-            deeper::mark_deeper(self.surfaces[1], points, counts, self.number, points_of_by)?;
+        points_of_by: &dyn Fn(usize, [Expr<'g>; 2]) -> SurfaceProblem,
+    ) -> Result<Vec<[Vec<Meeting>; 2]>, TapeError> {
+        let intersection = |&(by, number): &(&BoundSurface<'g>, usize)| {
+            Ok((Intersection::new([self.surface, by], self.coordinates)?, number))
+        };
+        let intersections: Vec<(Intersection, usize)> = self.by.iter().map(intersection).collect::<Result<_, _>>()?;
+        let meetings = trim(points, targets, counts, (&intersections, self.tool.as_ref()));
+        for (place, ((by, number), met)) in self.by.iter().zip(&meetings).enumerate() {
+            if met.iter().all(Vec::is_empty) {
+                let points_of_by = |coordinates| points_of_by(place, coordinates);
+                deeper::mark_deeper(by, points, counts, *number, &points_of_by)?;
+            }
         }
         Ok(meetings)
     }
@@ -53,18 +62,23 @@ impl<'g> Trim<'_, 'g> {
 #[derive(Clone, Copy, Default)]
 struct Known {
     stays: bool,
-    goes: bool,
+    /// The number of what takes it.
+    goes: Option<usize>,
 }
 
-/// Marks the solved points of a grid of the intersection's first surface that its second cuts away, as
-/// [`CutBy::Other`]`(number)`, and gives back where the two meet on the grid: on the columns, one after the other, and on the
-/// rows.
+/// Where the surface meets one of those that trim it, whose number comes with it.
+type Met = (Meeting, usize);
+
+/// Marks the solved points of a grid of the intersections' first surface that their second ones cut away, as
+/// [`CutBy::Other`] of the number of each, and gives back where it meets each of them on the grid: on the columns, one after the other, and on
+/// the rows.
 ///
 /// `targets` are the values of the two coordinates, row by row. Each row and each column is a line on the first surface. The
 /// surfaces are brought to meet on it; a point is cut away if between it and the next meeting, before or after, the surface
-/// runs outside the body that owns the second one. A point without a meeting on its row and column is as the neighbours
-/// that no meeting parts from it. What rows, columns and neighbours disagree about is [`Outcome::Undecided`]. Where nothing
-/// meets, nothing is cut away.
+/// runs outside the body that the second ones bound: a line that leaves it through one of them may enter it again through another. A point
+/// without a meeting on its row and column is as the neighbours that no meeting parts from it. What rows, columns and neighbours disagree about
+/// is [`Outcome::Undecided`]. Where nothing meets, nothing is cut away. Meetings with what the `tool` of the second ones cuts away of them itself
+/// are left out.
 ///
 /// # Panics
 /// If there are not `counts[0] · counts[1]` targets and points.
@@ -72,40 +86,55 @@ pub fn trim(
     points: &mut [SurfacePoint],
     targets: &[[f64; 2]],
     counts: [usize; 2],
-    intersection: &Intersection,
-    number: usize,
-) -> [Vec<Meeting>; 2] {
+    (intersections, tool): (&[(Intersection, usize)], Option<&SecondaryCutting>),
+) -> Vec<[Vec<Meeting>; 2]> {
     assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
     assert_eq!(targets.len(), points.len(), "one point for each target");
     let mut known = vec![Known::default(); points.len()];
     let mut joined: Vec<[usize; 2]> = Vec::new();
-    let mut meetings = [Vec::new(), Vec::new()];
+    let mut meetings = vec![[Vec::new(), Vec::new()]; intersections.len()];
     let [rows, columns] = counts;
     let columns_down = (0..columns).map(|j| (0..rows).map(|i| i * columns + j).collect());
     let rows_across = (0..rows).map(|i| (0..columns).map(|j| i * columns + j).collect());
     for (lines, coordinate) in [(columns_down.collect::<Vec<Vec<usize>>>(), 0), (rows_across.collect(), 1)] {
-        let mut before: Vec<Vec<f64>> = Vec::new();
+        let mut before: Vec<Vec<Vec<f64>>> = vec![Vec::new(); intersections.len()];
         for indices in &lines {
             let line = Line::through(indices, targets, coordinate);
             let near: Vec<&SurfacePoint> =
                 indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved).collect();
-            let starts = [before.clone(), intersection.crossings(&near)].concat();
-            let found = intersection.on_line(line, &starts, &near);
-            decide(&mut known, &mut joined, indices, targets, line, &found);
-            if !found.is_empty() {
-                before = found.iter().map(Meeting::unknowns).collect();
+            let mut all: Vec<Met> = Vec::new();
+            for (place, (intersection, number)) in intersections.iter().enumerate() {
+                let starts = [before[place].clone(), intersection.crossings(&near)].concat();
+                let mut found = intersection.on_line(line, &starts, &near);
+                if !found.is_empty() {
+                    before[place] = found.iter().map(Meeting::unknowns).collect();
+                }
+                if let Some(tool) = tool {
+                    keep_left(&mut found, tool);
+                }
+                let on_grid = found.iter().filter(|meeting| line.is_on_grid(meeting.along, indices, targets));
+                meetings[place][coordinate].extend(on_grid.cloned());
+                all.extend(found.into_iter().map(|meeting| (meeting, *number)));
             }
-            meetings[coordinate]
-                .extend(found.into_iter().filter(|meeting| line.is_on_grid(meeting.along, indices, targets)));
+            all.sort_by(|a, b| a.0.along.total_cmp(&b.0.along));
+            decide(&mut known, &mut joined, indices, targets, line, &all);
         }
     }
     spread(&mut known, &joined);
     for (point, known) in points.iter_mut().zip(known) {
-        if point.outcome == Outcome::Solved && known.goes {
+        if let Some(number) = known.goes.filter(|_| point.outcome == Outcome::Solved) {
             point.outcome = if known.stays { Outcome::Undecided } else { Outcome::CutAway(CutBy::Other(number)) };
         }
     }
     meetings
+}
+
+/// Leaves out the meetings with what the tool of the second surface cuts away of it.
+fn keep_left(found: &mut Vec<Meeting>, tool: &SecondaryCutting) {
+    let mut seconds: Vec<SurfacePoint> = found.iter().map(|meeting| meeting.second.clone()).collect();
+    tool.judge(&mut seconds, [found.len(), 1]);
+    let mut is_left = seconds.into_iter().map(|point| !matches!(point.outcome, Outcome::CutAway(_)));
+    found.retain(|_| is_left.next() == Some(true));
 }
 
 impl Line {
@@ -137,25 +166,29 @@ fn decide(
     indices: &[usize],
     targets: &[[f64; 2]],
     line: Line,
-    found: &[Meeting],
+    found: &[Met],
 ) {
     let place = |at: usize| line.along(targets[at]);
     for &at in indices {
         let s = place(at);
-        if found.iter().any(|meeting| (meeting.along - s).abs() <= ON_EDGE) {
+        if found.iter().any(|(meeting, _)| (meeting.along - s).abs() <= ON_EDGE) {
             known[at].stays = true;
             continue;
         }
-        let before = found.iter().rev().find(|meeting| meeting.along < s).map(|meeting| meeting.leaves);
-        let after = found.iter().find(|meeting| meeting.along > s).map(|meeting| !meeting.leaves);
-        for goes in [before, after].into_iter().flatten() {
-            known[at].goes |= goes;
-            known[at].stays |= !goes;
+        let before = found.iter().rev().find(|(meeting, _)| meeting.along < s);
+        let after = found.iter().find(|(meeting, _)| meeting.along > s);
+        let verdicts = [before.map(|(met, by)| (met.leaves, by)), after.map(|(met, by)| (!met.leaves, by))];
+        for (goes, by) in verdicts.into_iter().flatten() {
+            if goes {
+                known[at].goes.get_or_insert(*by);
+            } else {
+                known[at].stays = true;
+            }
         }
     }
     for pair in indices.windows(2) {
         let (a, b) = (place(pair[0]), place(pair[1]));
-        if !found.iter().any(|meeting| (a.min(b) - ON_EDGE..=a.max(b) + ON_EDGE).contains(&meeting.along)) {
+        if !found.iter().any(|(meeting, _)| (a.min(b) - ON_EDGE..=a.max(b) + ON_EDGE).contains(&meeting.along)) {
             joined.push([pair[0], pair[1]]);
         }
     }
@@ -163,15 +196,15 @@ fn decide(
 
 /// Points of which nothing is known are as those that they hang together with.
 fn spread(known: &mut [Known], joined: &[[usize; 2]]) {
-    let open: Vec<bool> = known.iter().map(|point| !point.stays && !point.goes).collect();
+    let open: Vec<bool> = known.iter().map(|point| !point.stays && point.goes.is_none()).collect();
     loop {
         let mut changed = false;
         for &[a, b] in joined.iter().chain(joined.iter().rev()) {
             for (from, to) in [(a, b), (b, a)] {
                 let Known { stays, goes } = known[from];
-                if open[to] && ((stays && !known[to].stays) || (goes && !known[to].goes)) {
+                if open[to] && ((stays && !known[to].stays) || (goes.is_some() && known[to].goes.is_none())) {
                     known[to].stays |= stays;
-                    known[to].goes |= goes;
+                    known[to].goes = known[to].goes.or(goes);
                     changed = true;
                 }
             }
