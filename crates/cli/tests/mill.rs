@@ -12,6 +12,8 @@ mod spaces;
 #[path = "mill/special.rs"]
 mod special;
 mod support;
+#[path = "mill/tip.rs"]
+mod tip;
 #[path = "mill/verified.rs"]
 mod verified;
 #[path = "mill/whole.rs"]

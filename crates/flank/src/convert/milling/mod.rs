@@ -24,6 +24,7 @@ mod ridge;
 pub(crate) mod setup;
 pub(crate) mod side;
 mod spaces;
+mod straight;
 mod target;
 mod text;
 mod verify;
@@ -44,6 +45,7 @@ use self::patch::Lattice;
 use self::plan::{LeftAt, Plan, Planner};
 use self::result::{BallAt, CurvatureAt, HeightLeft, MillResult, MilledAxis};
 use self::spaces::Spaces;
+use self::straight::Straight;
 use self::target::{Fields, Target};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
@@ -272,8 +274,8 @@ fn milled<'p, 'g>(
             return Err(missed);
         }
     }
-    let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
-    let plan = Planner { target, fields, cutter, axes }.plan()?;
+    let straight = Straight::of_machine(machine.as_ref(), request.tool_centre_control);
+    let plan = Planner { target, fields, cutter, straight }.plan()?;
     let lattice = target.lattice(plan.shares.clone())?;
     let columns = plan.shares[1].len();
     let of_pass = |pass: usize| -> Result<Vec<[f64; 6]>, NotDone> {

@@ -10,10 +10,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::cutter::MillingCutter;
-use super::machine::{FreeAxes, Machine};
+use super::machine::Machine;
 use super::patch::Lattice;
 use super::plan::{self, LeftAt, Lost, Plan, evenly, higher, lower};
 use super::result::HeightLeft;
+use super::straight::Straight;
 use super::target::{Fields, Target};
 use super::{Milled, left_at, text};
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -350,9 +351,9 @@ pub(super) fn milled<'p, 'g>(
     let told = side_left(target, &map, &on_way, (&pass, &start, side));
     let few: Vec<[f64; 6]> = evenly(9).into_iter().map(|share| pass.way.at(share)).collect();
     let machine = machine.map(|machine| machine.on_best_elbow(&[few]));
-    let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
+    let straight = Straight::of_machine(machine.as_ref(), request.tool_centre_control);
     let rows = ROWS.map(|row| PassedRow::new(fields, cutter, &pass.way, row));
-    let blocks = |count: usize| left_by_blocks(target, cutter, (&pass.way, &start, axes), &rows, &evenly(count));
+    let blocks = |count: usize| left_by_blocks(target, cutter, (&pass.way, &start, straight), &rows, &evenly(count));
     let widest = way_length(&pass.way);
     let count = plan::positions(target, widest, blocks)?;
     let along = evenly(count);
@@ -432,11 +433,11 @@ impl PassedRow {
 fn left_by_blocks(
     target: &Target<'_, '_>,
     cutter: &MillingCutter,
-    (way, start, axes): (&PoseSeries, &Start, Option<&FreeAxes>),
+    (way, start, straight): (&PoseSeries, &Start, Straight<'_>),
     rows: &[PassedRow],
     along: &[f64],
 ) -> Result<[LeftAt; 2], NotDone> {
-    let blocks = plan::blocks(axes, way, along);
+    let blocks = straight.blocks(way, along);
     let mut ends = [LeftAt { shares: [0.5, start.share(0.0)], height: 0.0 }; 2];
     for row in rows {
         for (pair, block) in along.windows(2).zip(&blocks) {
@@ -444,11 +445,7 @@ fn left_by_blocks(
             let Some(place) = row.passed_at(middle) else { continue };
             let line = row.line.at(place);
             let Some(exact) = lowest(way, &cutter.cutting, &line, middle) else { continue };
-            let from_pole = |axes: &FreeAxes| {
-                let ends = [pair[0], pair[1]].map(|share| axes.angle_from_pole(&way.at(share)));
-                ends[0].min(ends[1])
-            };
-            let lost = || Lost { shares: [row.share, place], from_pole: axes.map(from_pole) };
+            let lost = || Lost { shares: [row.share, place], from_pole: straight.from_pole(way, [pair[0], pair[1]]) };
             let found = lowest(block, &cutter.cutting, &line, 0.5).ok_or_else(|| lost().told(target))?;
             let left = LeftAt { shares: [row.share, place], height: found.height - exact.height };
             ends = [higher(ends[0], left), lower(ends[1], left)];
