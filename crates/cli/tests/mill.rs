@@ -5,6 +5,8 @@
 mod dexels;
 #[path = "mill/pair.rs"]
 mod pair;
+#[path = "mill/reached.rs"]
+mod reached;
 #[path = "mill/retracts.rs"]
 mod retracts;
 #[path = "mill/spaces.rs"]

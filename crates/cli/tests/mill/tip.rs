@@ -10,7 +10,7 @@ const REACH: f64 = 60.0;
 const HOLDER: [f64; 2] = [20.0, 40.0];
 
 /// A ball on a machine with A and C in its table; the face looks along x, the top along z, and a stop stands against x beside the holder.
-fn job(milling: &str) -> String {
+pub(super) fn job(milling: &str) -> String {
     let library = self_contained(&["machines/five_axis_table_table", "tools/end_mills"]);
     format!(
         "{library}

@@ -269,8 +269,11 @@ fn milled<'p, 'g>(
     let machine = machine.map(|machine| machine.on_best_elbow(&few));
     if let Some(machine) = &machine {
         let places: Vec<[f64; 2]> = fields.lattice.each().map(|(shares, _)| shares).collect();
-        let poses: Vec<[f64; 6]> = places.iter().map(|[pass, along]| fields.of_pass(0).at([*pass, *along])).collect();
-        if let Some(missed) = machine.unreached(&poses, |k| target.place(places[k])) {
+        // every other pass may lean the other way
+        let ways = if target.milling.both_ways { 2 } else { 1 };
+        let of_way = |way: usize| places.iter().map(move |shares| fields.of_pass(way).at(*shares));
+        let poses: Vec<[f64; 6]> = (0..ways).flat_map(of_way).collect();
+        if let Some(missed) = machine.unreached(&poses, |k| target.place(places[k % places.len()])) {
             return Err(missed);
         }
     }
