@@ -281,8 +281,10 @@ impl Planner<'_, '_, '_> {
             let mut ends = [LeftAt { shares: [share, 0.0], height: 0.0 }; 2];
             for ((pair, block), (middle, across)) in along.windows(2).zip(&blocks).zip(&middles) {
                 let found = left_by_block(&surface, block, [pair[0], pair[1]], cutter, stock);
-                let lost =
-                    || Lost { shares: [share, pair[0]], from_pole: straight.from_pole(&path, [pair[0], pair[1]]) };
+                let lost = || Lost {
+                    shares: [share, pair[0]],
+                    from_pole: straight.least_from_pole(&path, [pair[0], pair[1]]),
+                };
                 let Cusp { share: at, height } = found.ok_or_else(lost)?;
                 let left = LeftAt { shares: [share, at], height: height - stock };
                 ends = [higher(ends[0], left), lower(ends[1], left)];

@@ -535,7 +535,8 @@ fn left_by_blocks(
             let Some(place) = row.passed_at(middle) else { continue };
             let line = row.line.at(place);
             let Some(exact) = lowest(way, &cutter.cutting, &line, middle) else { continue };
-            let lost = || Lost { shares: [row.share, place], from_pole: straight.from_pole(way, [pair[0], pair[1]]) };
+            let lost =
+                || Lost { shares: [row.share, place], from_pole: straight.least_from_pole(way, [pair[0], pair[1]]) };
             let found = lowest(block, &cutter.cutting, &line, 0.5).ok_or_else(|| lost().told(target))?;
             let left = LeftAt { shares: [row.share, place], height: found.height - exact.height };
             ends = [higher(ends[0], left), lower(ends[1], left)];

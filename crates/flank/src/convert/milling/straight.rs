@@ -45,7 +45,7 @@ impl<'p> Straight<'p> {
     }
 
     /// How far the axis of the cutter is from the pole at the nearer end of a block, radians.
-    pub(super) fn from_pole(self, path: &PoseSeries, ends: [f64; 2]) -> Option<f64> {
+    pub(super) fn least_from_pole(self, path: &PoseSeries, ends: [f64; 2]) -> Option<f64> {
         let axes = self.axes()?;
         let [first, last] = ends.map(|share| axes.angle_from_pole(&path.at(share)));
         Some(first.min(last))
