@@ -356,6 +356,10 @@ fn corrections_are_multiples_of_steps() {
     }
     let [rounded, best] = [&told, &exact].map(|told| number(&told["correction"]["left_um"]));
     assert!(best < 1e-2 && rounded > best && rounded < 1.0, "{rounded} {best}");
+    // what is identified without steps is met, so that they are the reason
+    let (_, stderr) = fit(3, &[&asked[..], &["--round", "radial_distance=2mm", "--within", "0.02um"]].concat());
+    let is_told = stderr.contains("steps: m.radial_distance stands on a step of --round");
+    assert!(is_told && !stderr.contains("rank:"), "{stderr}");
     for (round, says) in [
         ("nosuch=1um", "names `nosuch`, which does not vary"),
         ("radial_distance=1arcsec", "this step is one in mm"),
@@ -419,6 +423,13 @@ fn a_setting_stays_within_its_range() {
     assert_eq!((&first["at_bound"], &first["uncertain_by"]), (&Value::from("high"), &Value::Null));
     assert!((number(&first["new"]) - 98.0).abs() < 1e-12);
     assert!(stderr.contains("not met") && number(&told["identification"]["left_um"]) > 0.01, "{stderr}");
+    // where the range does not end for the correction, which goes the other way, it is the reason all the same
+    let wider = std::fs::read_to_string(&spec).expect("it was written").replace("97.9 mm .. 98 mm", "90 mm .. 98 mm");
+    let spec = written(&project, "wider.chain", &wider);
+    let (told, stderr) = fit(3, &[&spec, "concave", "--measured", path(&file), "--vary", VARIED, "--within", "0.01um"]);
+    assert!(told["correction"]["settings"][0]["at_bound"].is_null(), "{told}");
+    let is_told = stderr.contains("bounds: m.radial_distance stands at the end of its range");
+    assert!(is_told && !stderr.contains("rank:"), "{stderr}");
 }
 
 #[test]

@@ -20,6 +20,11 @@ fn a_curvature_is_written_as_the_language_reads_it() {
     let run = flank(&[&["fit", spec], &asked[..]].concat());
     assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
     assert!(text(&run.stdout).contains("m.crowning: -0.00003"), "{}", text(&run.stdout));
+    // 30 um over the square of a length of mm are some 1e-5 1/mm, of which four digits are told
+    let told = text(&run.stdout);
+    let row = told.lines().rfind(|line| line.trim_start().starts_with("m.crowning  ")).expect("a row");
+    let digits = |word: &str| word.trim_start_matches(['-', '0', '.']).chars().filter(char::is_ascii_digit).count();
+    assert!(row.split_whitespace().skip(1).take(3).any(|word| digits(word) >= 4), "{row}");
 }
 
 /// A step, a scatter and a range of a curvature, as results show its unit, as the language writes it, and as one over another unit.

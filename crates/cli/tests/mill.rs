@@ -5,6 +5,8 @@
 mod dexels;
 #[path = "mill/pair.rs"]
 mod pair;
+#[path = "mill/reached.rs"]
+mod reached;
 #[path = "mill/retracts.rs"]
 mod retracts;
 #[path = "mill/spaces.rs"]
@@ -12,6 +14,8 @@ mod spaces;
 #[path = "mill/special.rs"]
 mod special;
 mod support;
+#[path = "mill/tip.rs"]
+mod tip;
 #[path = "mill/verified.rs"]
 mod verified;
 #[path = "mill/whole.rs"]

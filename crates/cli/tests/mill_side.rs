@@ -212,7 +212,7 @@ fn scanned(poses: &[[f64; 6]], (half_angle, tip_radius, length): (f64, f64, f64)
 fn a_bevel_flank_is_left_as_brute_force_leaves_it() {
     let out = folder("side_bevel_scanned");
     let cone = "conical_mill(half_angle: 4 deg, tip_radius: 1 mm, cutting_length: 25 mm, reach: 40 mm)";
-    let milling = "side profilewise: 0.4 .. 0.6 by 3\n along lengthwise: 0.4 .. 0.6 by 801\n";
+    let milling = "side profilewise: 0.4 .. 0.6 by 3\n along lengthwise: 0.4 .. 0.6 by 1001\n";
     let spec = written(&out, "milled.chain", &pinion(cone, milling));
     let found = json(&spec, &out, &["--rows", "7", "--columns", "11"]);
     let rows = |name: &str| -> (Vec<String>, Vec<Vec<String>>) {
@@ -228,11 +228,11 @@ fn a_bevel_flank_is_left_as_brute_force_leaves_it() {
     let poses = columns(rows("milled.part.csv"), ["tip_x", "tip_y", "tip_z", "axis_x", "axis_y", "axis_z"]);
     let lines = columns(rows("milled.part.left.csv"), ["x", "y", "z", "nx", "ny", "nz"]);
     let left = found["map"]["heights_um"].as_array().expect("heights");
-    assert!(poses.len() >= 801 && lines.len() == 77 && left.len() == 77);
+    assert!(poses.len() == 1001 && lines.len() == 77 && left.len() == 77);
     let (mut most, mut least) = (0.0f64, 0.0f64);
     for (line, left) in lines.iter().zip(left) {
         let (left, brute) = (number(left), 1e3 * scanned(&poses, (4f64.to_radians(), 1.0, 25.0), line));
-        // parabolas through heights at positions of some 10 um
+        // parabolas through heights at positions of some 10 um: the error falls with the cube of their distance, and is half of this
         assert!((left - brute).abs() < 1e-5, "{left} {brute} um at {line:?}");
         (most, least) = (most.max(brute), least.min(brute));
     }
@@ -297,4 +297,170 @@ fn points_are_milled_with_the_side_of_a_cone() {
     let spec = written(&out, "milled.chain", &job(&PINION, ("pinion_19x62", "convex"), ball, milling));
     let of_ball = json(&spec, &out, &[]);
     assert!(number(&of_ball["passes"]) > 3.0 * number(&found["passes"]), "{} {}", of_ball["passes"], found["passes"]);
+}
+
+/// An involute helicoid, given by the angle about its base circle and by z, that turns left by a turn over so many mm.
+fn helicoid(lead: f64, [low, high]: [f64; 2], cutter: &str) -> String {
+    let library = support::self_contained(&["machines/five_axis_table_table", "tools/end_mills"]);
+    format!(
+        "{library}
+machine bench {{
+    axis lift : linear
+    frame table
+    frame part in table = translate_z(lift)
+    fix lift = 0 mm
+}}
+tool helicoid {{
+    surface skin(xi: angle in 0.01 rad .. 2.5 rad, q: length in -60 mm .. 60 mm) {{
+        let g = xi - q / ({lead} mm / 1 rev)
+        at = [45 mm * (cos(g) + xi * sin(g)), 45 mm * (sin(g) - xi * cos(g)), q]
+        body towards [-sin(g), cos(g), 0]
+    }}
+}}
+job milled {{
+    machine b = bench
+    tool w = helicoid
+    mount w on b.part
+    surface skin in b.table = move(w.skin)
+    sample skin {{ rho: {low} mm .. {high} mm by 7, z: -8 mm .. 8 mm by 9 }}
+    machine mill = five_axis_table_table(work_z: 60 mm)
+    tool cutter = {cutter}
+    mount cutter on mill.cutter
+    mill part of skin with cutter.cutting in mill.work {{
+        side z: -8 mm .. 8 mm by 1
+        along rho: {low} mm .. {high} mm, chord 1 um
+    }}
+}}
+"
+    )
+}
+
+/// The line of contact through a corner of the strip is a tangent of the base helix: 8 mm of z shift its length from the base circle by
+/// 8 mm · 45 mm / p. So the pass runs from where it says to where it says, also close to the base circle, inside which there is no surface.
+#[test]
+fn a_pass_runs_as_far_as_the_lines_of_contact_through_its_corners() {
+    let out = folder("side_corners");
+    let slim = "conical_mill(half_angle: 0 deg, tip_radius: 0.5 mm, cutting_length: 45 mm, reach: 60 mm)";
+    for (lead, [low, high], cutter) in [
+        (400.0, [48.0, 52.0], CYLINDER.replace("cutting_length: 20 mm", "cutting_length: 25 mm")),
+        (400.0, [46.0, 52.0], slim.replace("0.5 mm", "1.5 mm")),
+        (250.0, [48.0, 52.0], slim.to_string()),
+    ] {
+        let found = json(&written(&out, "milled.chain", &helicoid(lead, [low, high], &cutter)), &out, &[]);
+        let side = &found["side"];
+        let shift = 8.0 * 45.0 * std::f64::consts::TAU / lead;
+        let rho = |at: f64, by: f64| ((at * at - 45.0 * 45.0).sqrt() + by).hypot(45.0);
+        let needed = [low - rho(low, -shift), rho(high, shift) - high].map(|by| by / (high - low));
+        let beyond = [0, 1].map(|k| number(&side["beyond"][k]));
+        // a little farther, as the axis may be turned a little otherwise
+        let is_near = |(beyond, needed): (f64, f64)| beyond >= needed && beyond < 1.2 * needed + 0.01;
+        assert!(beyond.into_iter().zip(needed).all(is_near), "{beyond:?} {needed:?}");
+        assert!(low - beyond[0] * (high - low) > 45.0, "{beyond:?}");
+        assert_eq!(side["untouched"], 0, "{side}");
+        // near the base circle polynomials through the middle of the strip come near slowly
+        assert!(left(side).iter().all(|left| left.abs() < 1e-3), "{side}");
+    }
+}
+
+const SLANTED: &str = "
+machine bench {
+    axis lift : linear
+    frame table
+    frame part in table = translate_z(lift)
+    fix lift = 0 mm
+}
+tool blade {
+    surface skin(p: length in -30 mm .. 30 mm, q: length in -30 mm .. 30 mm) {
+        let a = 0.6 deg / 1 mm * q
+        let h = -p^2 / 400 mm + 20 mm
+        at = [h * cos(a) - p * sin(a), h * sin(a) + p * cos(a), q]
+        body towards [-cos(a), -sin(a), 0]
+    }
+}
+machine slanted {
+    axis X : linear in -400 mm .. 400 mm
+    axis Y : linear in -300 mm .. 300 mm
+    axis Z : linear in -300 mm .. 500 mm
+    axis B : rotary in -190 deg .. 190 deg
+    axis C : rotary
+    frame bed
+    frame slide in bed = translate(X, Y, Z)
+    frame head in slide = rotate([sin(45 deg), 0, cos(45 deg)], B) translate(13 mm, 3 mm, -70 mm)
+    frame cutter in head = rotate_x(180 deg)
+    frame table in bed = rotate_x(10 deg) rotate_z(C) translate(1 mm, 2 mm, 3 mm)
+    frame work in table = translate(4 mm, -2 mm, 30 mm) rotate_y(-5 deg) rotate_x(97 deg)
+}
+";
+
+/// With tool-centre control the rotary axes of a slanted head and a table turn evenly: by blocks between its positions a cone is as deep in a
+/// twisted blade, beyond what the pass itself leaves, as it is said to be, and no deeper than `chord` allows. Brute force over very many
+/// positions, without envelopes, on the row where it is deepest.
+#[test]
+fn blocks_are_as_deep_as_evenly_turning_axes_go() {
+    let out = folder("side_tip");
+    let cone = "conical_mill(tip_radius: 3 mm, half_angle: 7 deg, cutting_length: 24 mm)";
+    let library = support::self_contained(&["tools/end_mills"]);
+    let plan = |blocks: &str| {
+        let spec = format!(
+            "{library}{SLANTED}\njob milled {{\n machine b = bench\n tool w = blade\n mount w on b.part\n surface skin in b.table = move(w.skin)\n \
+             sample skin {{ p: -6 mm .. 6 mm by 7, q: -8 mm .. 8 mm by 9 }}\n machine mill = slanted\n tool cutter = {cone}\n \
+             mount cutter on mill.cutter\n mill part of skin with cutter.cutting in mill.work {{\n side p: -6 mm .. 6 mm by 6\n \
+             along q: -8 mm .. 8 mm{blocks}\n stock 0.02 mm\n }}\n}}\n"
+        );
+        let found = json(&written(&out, "milled.chain", &spec), &out, &["--tcp"]);
+        let text = std::fs::read_to_string(out.join("milled.part.csv")).expect("it is written");
+        let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+        let titles: Vec<&str> = lines.next().expect("titles").split(',').collect();
+        let names = ["tip_x", "tip_y", "tip_z", "axis_x", "axis_y", "axis_z", "B_deg", "C_deg"];
+        let columns = names.map(|name| titles.iter().position(|title| *title == name).expect(name));
+        let row = |line: &str| {
+            let row: Vec<f64> = line.split(',').map(|number| number.parse().expect("a number")).collect();
+            columns.map(|k| row[k])
+        };
+        (number(&found["blocks"][1]["height_um"]), lines.map(row).collect::<Vec<[f64; 8]>>())
+    };
+    let turned = |[x, y, z]: [f64; 3], [a, b, c]: [f64; 3], deg: f64| {
+        let (sine, cosine) = deg.to_radians().sin_cos();
+        let along = (a * x + b * y + c * z) * (1.0 - cosine);
+        let cross = [b * z - c * y, c * x - a * z, a * y - b * x];
+        [
+            x * cosine + cross[0] * sine + a * along,
+            y * cosine + cross[1] * sine + b * along,
+            z * cosine + cross[2] * sine + c * along,
+        ]
+    };
+    let axis = |b: f64, c: f64| {
+        let half = 0.5f64.sqrt();
+        let out_of_spindle = turned([0.0, 0.0, 1.0], [half, 0.0, half], b);
+        let steps = [([1.0, 0.0, 0.0], 10.0), ([0.0, 0.0, 1.0], c), ([0.0, 1.0, 0.0], -5.0), ([1.0, 0.0, 0.0], 97.0)];
+        steps.into_iter().fold(out_of_spindle, |seen, (about, by)| turned(seen, about, -by))
+    };
+    let (told, rows) = plan(", chord 0.5 um");
+    let (_, ideal) = plan(" by 801");
+    let ideal: Vec<[f64; 6]> = ideal.into_iter().map(|[x, y, z, i, j, k, ..]| [x, y, z, i, j, k]).collect();
+    const PARTS: usize = 200;
+    let at = |pair: &[[f64; 8]], share: f64| {
+        let [x, y, z, _, _, _, b, c] = [0, 1, 2, 3, 4, 5, 6, 7].map(|k| pair[0][k] + share * (pair[1][k] - pair[0][k]));
+        let [i, j, k] = axis(b, c);
+        [x, y, z, i, j, k]
+    };
+    let first = at(&rows[..2], 0.0);
+    assert!((3..6).all(|k| (first[k] - rows[0][k]).abs() < 1e-9), "{first:?} {:?}", rows[0]);
+    let blocks: Vec<[f64; 6]> =
+        rows.windows(2).flat_map(|pair| (0..PARTS).map(move |k| at(pair, k as f64 / PARTS as f64))).collect();
+    let deep = (0..=320).map(|k| {
+        let (p, q) = (6.0f64, -8.0 + 0.05 * f64::from(k));
+        let ((s, c), h, twist) = ((0.6 * q).to_radians().sin_cos(), 20.0 - p * p / 400.0, 0.6f64.to_radians());
+        let (by_p, by_q) =
+            ([-p / 200.0 * c - s, c - p / 200.0 * s, 0.0], [-twist * (h * s + p * c), twist * (h * c - p * s), 1.0]);
+        let n = [by_p[1] * by_q[2], -by_p[0] * by_q[2], by_p[0] * by_q[1] - by_p[1] * by_q[0]];
+        let size = (n[0] * n[0] + n[1] * n[1] + n[2] * n[2]).sqrt();
+        let line = [h * c - p * s, h * s + p * c, q, n[0] / size, n[1] / size, n[2] / size];
+        let of = (7f64.to_radians(), 3.0, 24.0);
+        1e3 * (scanned(&blocks, of, &line) - scanned(&ideal, of, &line))
+    });
+    let deepest = deep.fold(0.0, f64::min);
+    assert!(deepest >= -0.5, "{deepest} um");
+    // blocks are looked at in their middles, where they are deepest but for what the pass bends
+    assert!((told - deepest).abs() < 0.02, "{told} {deepest} um");
 }

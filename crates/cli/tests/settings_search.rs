@@ -2,7 +2,48 @@
 
 mod support;
 
-use support::{flank, text};
+use support::{flank, folder, text, written};
+
+const SLANTED: &str = "
+machine slanted {
+    axis X : linear in -300 mm .. 300 mm
+    axis A : rotary in -180 deg .. 180 deg
+    axis B : rotary in -180 deg .. 180 deg
+    param twist : angle in -90 deg .. 90 deg
+    axis C : rotary in -180 deg .. 180 deg
+    param off : length in -100 mm .. 100 mm
+    param drop : length in -100 mm .. 100 mm
+    param lift : length in -100 mm .. 100 mm
+    param slant : angle in 0 deg .. 80 deg
+    param wedge : angle in -60 deg .. 60 deg
+    frame bed
+    frame knee in bed = translate_x(X) rotate([sin(slant), 0, cos(slant)], A) translate(off, 0 mm, drop)
+    frame head in knee = rotate_y(B) translate_z(20 mm)
+    frame table in bed = rotate_y(wedge) translate_z(lift) rotate_z(C + twist)
+    frame work in table = translate(3 mm, 4 mm, 5 mm)
+}
+";
+const SLANTED_JOB: &str = "
+use \"slanted.chain\"
+tool bent {
+    surface edge(u: length in -3 mm .. 3 mm) {
+        at = [0.1 * u^2 / 1 mm, 0.02 * u^3 / 1 mm^2, u]
+        body towards [0, 1, 0]
+    }
+}
+job j {
+    machine m = slanted(twist: 0 deg, off: 31 mm, drop: -22 mm, lift: 14 mm, slant: 37 deg, wedge: -13 deg)
+    tool t = bent
+    mount t on m.head
+    motion phi : angle in -40 deg .. 40 deg
+    drive m.X = 150 mm * phi
+    drive m.A = 10 deg + 0.5 * phi
+    drive m.B = 30 deg - 0.3 * phi + 0.1 * phi^2 / 1 rad
+    drive m.C = -20 deg + 0.3 * phi
+    surface s in m.work = sweep(t.edge, over: phi)
+    sample s { u: -2 mm .. 2 mm by 5, phi: -30 deg .. 30 deg by 9 }
+}
+";
 
 /// Which settings of a cradle generator give this pinion's poses: those of its machine sheet.
 #[test]
@@ -94,4 +135,32 @@ fn of_equal_settings_the_nearest_to_the_defaults_are_found() {
         let setting = settings.iter().find(|setting| setting["name"] == name).expect(name);
         assert!((setting["value"].as_f64().unwrap() - value).abs() < 1e-8, "{setting}");
     }
+}
+
+/// A slanted rotary axis may be shifted along itself, which two offsets of the head, the lift of the table and X make up for, and a twist of the
+/// table's axis is an angle of C: none of these settings has one value. What the poses do determine of them is what such shifts leave.
+#[test]
+fn all_settings_that_change_together_are_told() {
+    let out = folder("settings_together");
+    written(&out, "slanted.chain", SLANTED);
+    let spec = written(&out, "job.chain", SLANTED_JOB);
+    let target = out.join("slanted.chain");
+    let run = flank(&["convert", &spec, "--to", target.to_str().expect("a plain path"), "--json"]);
+    assert_eq!(run.status.code(), Some(0), "{}", text(&run.stderr));
+    let found: serde_json::Value = serde_json::from_slice(&run.stdout).expect("JSON");
+    let settings = found["settings"].as_array().expect("settings");
+    let names = |determined: bool| -> Vec<&str> {
+        let of = settings.iter().filter(|setting| setting["determined"] == determined);
+        of.map(|setting| setting["name"].as_str().expect("a name")).collect()
+    };
+    assert_eq!(names(false), ["twist", "off", "drop", "lift"], "{settings:?}");
+    assert_eq!(names(true), ["slant", "wedge"], "{settings:?}");
+    let value = |name: &str| settings.iter().find(|of| of["name"] == name).expect(name)["value"].as_f64().unwrap();
+    // square to the axis, and along it together with the lift
+    let kept = |off: f64, drop: f64, lift: f64| {
+        let ((sine, cosine), upright) = (37f64.to_radians().sin_cos(), 13f64.to_radians().cos());
+        [off * cosine - drop * sine, (off * sine + drop * cosine) * cosine - lift * upright]
+    };
+    let (found, own) = (kept(value("off"), value("drop"), value("lift")), kept(31.0, -22.0, 14.0));
+    assert!(found.iter().zip(own).all(|(found, own)| (found - own).abs() < 1e-8), "{found:?} {own:?}");
 }

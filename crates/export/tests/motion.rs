@@ -201,6 +201,11 @@ fn axes_are_written_as_the_control_counts() {
     let text = program(&table, Dialect::LinuxCnc);
     let told = "axis B: -slide of B + 90 deg, from 72.759700 to 72.811263 deg, travel 0 .. 100 deg";
     assert!(text.replace(")\n(+", "").contains(told), "{told} in {text}");
+    // 15 deg are as many radians as 14.999999999999998 deg
+    table.axes[4].offset = 15f64.to_radians();
+    let text = program(&table, Dialect::LinuxCnc);
+    assert!(text.contains("axis B: -slide of B + 15 deg, from"), "{text}");
+    table.axes[4].offset = PI / 2.0;
     table.axes[4].travel = Some([-1.0, 0.31]);
     table.rows[100].axes[4] = 0.32;
     let beyond =

@@ -34,7 +34,7 @@ pub(crate) struct Mill {
     /// Write an NC program: fanuc, siemens, linuxcnc, heidenhain
     #[arg(long, value_parser = names::<NcDialect>(), value_delimiter = ',')]
     pub(crate) nc: Vec<NcDialect>,
-    /// Blocks are straight in the work: the control keeps the tip on its way (tool-centre control)
+    /// The control keeps the tip on its way (tool-centre control): it goes straight, and rotary axes turn evenly
     #[arg(long = "tool-centre-control", visible_alias = "tcp")]
     pub(crate) tool_centre_control: bool,
     /// Feed of the contact along the surface, mm/min

@@ -228,7 +228,8 @@ pub(super) fn extent_line(axis: &MachineAxis, mut ends: [f64; 2]) -> String {
         None => "travel not limited".to_owned(),
     };
     let sign = if axis.reversed { "-" } else { "" };
-    let offset = match axis.unit().written(axis.offset) {
+    let [offset, _] = axis.written([axis.offset; 2]);
+    let offset = match offset {
         0.0 => String::new(),
         offset => format!(" {} {} {unit}", if offset < 0.0 { '-' } else { '+' }, shortest(plain(offset.abs()))),
     };

@@ -141,6 +141,9 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
     if program.spindle.is_none() {
         head.push("- no speed is said: the program does not start the spindle".to_owned());
     }
+    head.push(
+        "- axes are said from where to where they go on passes; rapids and ways down and up go farther".to_owned(),
+    );
     for (index, axis) in program.axes.iter().enumerate() {
         let values = program.passes.iter().flat_map(|pass| &pass.rows).map(|row| row[index]);
         let ends = [values.clone().fold(f64::INFINITY, f64::min), values.fold(f64::NEG_INFINITY, f64::max)];

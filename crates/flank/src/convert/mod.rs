@@ -536,7 +536,7 @@ impl<'j, 'g> Conversion<'j, 'g> {
 }
 
 /// Whether what a chain leads to is a mirror image, wherever its axes stand: the determinant of its rotation is -1.
-fn is_mirrored(chain: &Chain<'_>) -> bool {
+pub(crate) fn is_mirrored(chain: &Chain<'_>) -> bool {
     chain.steps().iter().filter(|step| matches!(step, Step::Mirror(_))).count() % 2 == 1
 }
 

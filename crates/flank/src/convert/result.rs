@@ -220,7 +220,7 @@ pub struct FoundSetting {
     pub unit: UnitSymbol,
     /// In its unit.
     pub value: f64,
-    /// Whether the poses determine it.
+    /// Whether the poses determine it: it cannot change, with other settings neither, while they stay.
     pub determined: bool,
 }
 

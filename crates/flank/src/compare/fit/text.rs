@@ -11,6 +11,12 @@ use crate::project::units;
 
 /// Changes with a smaller share of the largest one's are left out.
 const LARGE: f64 = 0.3;
+/// Values are told with so many decimals, ...
+const DECIMALS: i32 = 6;
+/// ... or more, so that the largest of a setting has so many digits that count, ...
+const DIGITS: i32 = 4;
+/// ... but no more than this.
+const MOST_DECIMALS: i32 = 15;
 
 impl fmt::Display for FitResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -121,7 +127,11 @@ fn cells(of: &AdjustedSetting) -> [String; 8] {
         Some(RangeBound::High) => "upper",
         None => "-",
     };
-    let [now, change, new] = [of.now, of.change, of.new].map(|value| fixed(value, 6));
+    let values = [of.now, of.change, of.new];
+    let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    // curvatures of lines are some 1e-5 1/mm
+    let digits = if largest > 0.0 { DIGITS - 1 - largest.log10().floor() as i32 } else { DECIMALS };
+    let [now, change, new] = values.map(|value| fixed(value, digits.clamp(DECIMALS, MOST_DECIMALS) as usize));
     let uncertain = match (of.uncertain_by, of.at_bound) {
         (Some(by), _) => format!("{by:.2e}"),
         (None, Some(_)) => "-".to_string(),

@@ -1,11 +1,13 @@
 //! Whether a fit is what was asked for, and what speaks against it.
 
+use std::collections::BTreeSet;
+
 use flank_export::fixed;
 use flank_solver::{AdjustedSurfaces, linear_rest};
 
 use super::fitting::{Fitting, rms};
 use super::outliers::{Others, Outliers};
-use super::result::{FitResult, KeptSurface};
+use super::result::{AdjustedSetting, FitResult, KeptSurface};
 use super::words::NOTHING;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::requests::FitRequest;
@@ -130,11 +132,24 @@ fn not_shown(
 /// Why no settings do it.
 fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)) -> Vec<String> {
     let mut reasons = Vec::new();
-    let bound: Vec<&str> =
-        result.correction.settings.iter().filter(|of| of.at_bound.is_some()).map(|of| of.name.as_str()).collect();
+    let of_all = result.identification.iter().chain([&result.correction]).flat_map(|of| &of.settings);
+    let named = |which: fn(&AdjustedSetting) -> bool| -> Vec<&str> {
+        let (names, mut known) = (of_all.clone().filter(|of| which(of)).map(|of| of.name.as_str()), BTreeSet::new());
+        names.filter(|name| known.insert(*name)).collect()
+    };
+    let (bound, stepped) = (named(|of| of.at_bound.is_some()), named(|of| of.is_rounded));
     if !bound.is_empty() {
         reasons.push(format!("bounds: {} stands at the end of its range", bound.join(", ")));
     }
+    if !stepped.is_empty() {
+        reasons.push(format!(
+            "steps: {} stands on a step of option `round`: a smaller one comes nearer",
+            stepped.join(", ")
+        ));
+    }
+    // without steps the settings do it
+    let is_by_steps =
+        !stepped.is_empty() && result.identification.as_ref().is_some_and(|of| of.left_um <= result.within_um);
     if !result.kept.is_empty() {
         let kept: Vec<&str> = result.kept.iter().map(|of| of.surface.as_str()).collect();
         reasons.push(format!(
@@ -156,7 +171,7 @@ fn reasons(result: &FitResult, (request, main): (&FitRequest, &AdjustedSurfaces)
     // what shows nothing shows nothing at a finer resolution
     let weak = main.fit.directions.iter().filter(|of| !of.is_used && of.size >= NOTHING).count();
     let all = main.fit.directions.len();
-    if bound.is_empty() && !is_enough {
+    if bound.is_empty() && !is_enough && !is_by_steps {
         let more = if request.vary.is_empty() { "" } else { "; more settings with option `vary` may" };
         let finer = match weak {
             0 => String::new(),

@@ -11,6 +11,7 @@ use super::obstacles::sampled;
 use super::patch::Patch as Milled;
 use super::plan::{Planner, evenly};
 use super::result::MillResult;
+use super::straight::Straight;
 use super::target::Target;
 use super::text::MEANT;
 use super::{Found, Worked, worked};
@@ -89,7 +90,7 @@ fn contacts(found: &Found<'_, '_>, pass: f64) -> Vec<[f64; 3]> {
 fn ridges(target: &Target<'_, '_>, found: &Found<'_, '_>) -> Patch {
     let Found { cutter, fields, milled, .. } = found;
     let columns = evenly(COLUMNS);
-    let planner = Planner { target, fields, cutter, axes: None };
+    let planner = Planner { target, fields, cutter, straight: Straight::Cutter };
     if milled.plan.cusp.is_none() {
         return left_by_one(target, found);
     }

@@ -55,7 +55,7 @@ pub(super) fn unsaid(target: &Target<'_, '_>, request: &MillRequest, programs: &
     let unwritten = request.tool_centre_control && request.nc.is_empty() && request.verify.is_none();
     let unwritten = unwritten.then(|| {
         remark(
-            "option `tool_centre_control` makes blocks straight in the work, and no program is asked for",
+            "option `tool_centre_control` lets the tip go straight in the work, and no program is asked for",
             "option `nc` names the controls that programs are for",
         )
     });

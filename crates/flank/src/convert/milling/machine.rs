@@ -8,6 +8,7 @@ use flank_solver::{MillAxes, NotExplicit, PoseSeries};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::convert::files::decimals;
+use crate::convert::is_mirrored;
 use crate::project::remark::{NotDone, NotDoneKind};
 use crate::project::units;
 
@@ -20,6 +21,9 @@ const FAR: f64 = 0.5;
 /// ... while the cutter's axis is nearer to the pole than this, where it turns ten times as far as that, goes through the pole. Farther off a long
 /// block turns it as far.
 const SWINGS: f64 = 0.1;
+/// Angles that come from cosines are known to the root of rounding where these are near one: a direction is beyond reach by more than this, and
+/// at the pole within it, radians.
+const ALIKE: f64 = 1e-6;
 
 /// A machine that takes the cutter along passes.
 pub(super) struct Machine<'p, 'g> {
@@ -28,6 +32,8 @@ pub(super) struct Machine<'p, 'g> {
     pub(super) free: Vec<&'p Axis<'g>>,
     /// The same in numbers.
     pub(super) axes: FreeAxes,
+    /// From the work to the cutter it makes a mirror image.
+    is_mirrored: bool,
 }
 
 /// Free axes in numbers.
@@ -71,7 +77,7 @@ impl<'p, 'g> Machine<'p, 'g> {
             is_rotary: free.iter().map(|axis| units::is_angle(axis.dimension)).collect(),
             travels: free.iter().map(|axis| axis.travel).collect(),
         };
-        Ok(Machine { machine, free, axes })
+        Ok(Machine { machine, free, axes, is_mirrored: is_mirrored(&milling.t_work_tool) })
     }
 
     /// The same on the elbow on which these poses stay within the travels, and turn less.
@@ -123,8 +129,17 @@ impl<'p, 'g> Machine<'p, 'g> {
         let missed = (0..poses.len()).filter(|k| off(*k) > MET);
         let worst = missed.max_by(|a, b| beyond(*a).total_cmp(&beyond(*b)))?;
         let name = &self.machine.name;
+        if self.axes.angle_from_pole(&poses[worst]) < ALIKE && beyond(worst) < ALIKE {
+            let free = reach.as_ref().map_or("a rotary axis", |reach| self.free[reach.first].name.as_str());
+            let message = format!("{name} holds the spindle at its pole at {}: {free} is free there", place(worst));
+            let way = "lean the cutter away with `lead` or `tilt`, or clamp the work at another angle".to_string();
+            return Some(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![way]));
+        }
         let why = match &reach {
-            Some(reach) if beyond(worst) > 0.0 => format!(
+            _ if self.is_mirrored => {
+                "it is of the other hand: from the work to the cutter it makes a mirror image, and no motion is its own mirror image".to_string()
+            }
+            Some(reach) if beyond(worst) > ALIKE => format!(
                 "it would stand {:.3} deg from the axis of {}, and {:.3} deg .. {:.3} deg are reached",
                 angle(worst).to_degrees(),
                 self.free[reach.first].name,
@@ -137,8 +152,11 @@ impl<'p, 'g> Machine<'p, 'g> {
             ),
         };
         let message = format!("the axes of {name} cannot bring the spindle to its direction at {}", place(worst));
-        let way = "clamp the work at another angle, or lean the cutter otherwise with `lead` and `tilt`".to_string();
-        Some(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![why, way]))
+        let way = match self.is_mirrored {
+            true => "`mirror` one of the frames between them in a variant of the machine",
+            false => "clamp the work at another angle, or lean the cutter otherwise with `lead` and `tilt`",
+        };
+        Some(NotDone::new(NotDoneKind::NotReached, name, message).with(vec![why, way.to_string()]))
     }
 
     /// What the machine cannot do on a pass: the first axis beyond its travel, a pole, or a pose that it does not reach.

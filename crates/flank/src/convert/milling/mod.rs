@@ -24,6 +24,7 @@ mod ridge;
 pub(crate) mod setup;
 pub(crate) mod side;
 mod spaces;
+mod straight;
 mod target;
 mod text;
 mod verify;
@@ -44,6 +45,7 @@ use self::patch::Lattice;
 use self::plan::{LeftAt, Plan, Planner};
 use self::result::{BallAt, CurvatureAt, HeightLeft, MillResult, MilledAxis};
 use self::spaces::Spaces;
+use self::straight::Straight;
 use self::target::{Fields, Target};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
@@ -267,13 +269,16 @@ fn milled<'p, 'g>(
     let machine = machine.map(|machine| machine.on_best_elbow(&few));
     if let Some(machine) = &machine {
         let places: Vec<[f64; 2]> = fields.lattice.each().map(|(shares, _)| shares).collect();
-        let poses: Vec<[f64; 6]> = places.iter().map(|[pass, along]| fields.of_pass(0).at([*pass, *along])).collect();
-        if let Some(missed) = machine.unreached(&poses, |k| target.place(places[k])) {
+        // every other pass may lean the other way
+        let ways = if target.milling.both_ways { 2 } else { 1 };
+        let of_way = |way: usize| places.iter().map(move |shares| fields.of_pass(way).at(*shares));
+        let poses: Vec<[f64; 6]> = (0..ways).flat_map(of_way).collect();
+        if let Some(missed) = machine.unreached(&poses, |k| target.place(places[k % places.len()])) {
             return Err(missed);
         }
     }
-    let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
-    let plan = Planner { target, fields, cutter, axes }.plan()?;
+    let straight = Straight::of_machine(machine.as_ref(), request.tool_centre_control);
+    let plan = Planner { target, fields, cutter, straight }.plan()?;
     let lattice = target.lattice(plan.shares.clone())?;
     let columns = plan.shares[1].len();
     let of_pass = |pass: usize| -> Result<Vec<[f64; 6]>, NotDone> {

@@ -6,7 +6,7 @@ use flank_solver::{Cusp, PoseSeries, cusp, left_by_block, lowest_beside, peak};
 use rayon::prelude::*;
 
 use super::cutter::MillingCutter;
-use super::machine::FreeAxes;
+use super::straight::Straight;
 use super::target::{Fields, Target};
 use crate::project::remark::{NotDone, NotDoneKind};
 
@@ -32,8 +32,6 @@ const ENDS: f64 = 1.0 / 16.0;
 const SHORT: usize = 1000;
 /// Halvings until the end of a ridge is found.
 const HALVINGS: u32 = 24;
-/// Points through which the motion of one block is known.
-const POINTS_OF_BLOCK: usize = 9;
 
 /// A place and what is left there, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +63,7 @@ pub(super) fn evenly(count: usize) -> Vec<f64> {
 /// A block that is not near the surface everywhere.
 pub(super) struct Lost {
     pub(super) shares: [f64; 2],
-    /// How far the axis of the cutter is from the pole at the nearer end, radians, where all axes go straight.
+    /// How far the axis of the cutter is from the pole at the nearer end, radians, where the axes are known.
     pub(super) from_pole: Option<f64>,
 }
 
@@ -86,8 +84,7 @@ pub(super) struct Planner<'p, 'j, 'g> {
     pub(super) target: &'p Target<'j, 'g>,
     pub(super) fields: &'p Fields,
     pub(super) cutter: &'p MillingCutter,
-    /// The machine, where its axes go straight from position to position; nothing where the cutter does.
-    pub(super) axes: Option<&'p FreeAxes>,
+    pub(super) straight: Straight<'p>,
 }
 
 impl Planner<'_, '_, '_> {
@@ -270,7 +267,7 @@ impl Planner<'_, '_, '_> {
 
     /// The most and the least that straight blocks leave on some passes.
     fn left_by_blocks(&self, passes: &[f64], along: &[f64], which: &[usize]) -> Result<[LeftAt; 2], NotDone> {
-        let (fields, cutter, axes, stock) = (self.fields, &self.cutter.cutting, self.axes, self.stock());
+        let (fields, cutter, straight, stock) = (self.fields, &self.cutter.cutting, self.straight, self.stock());
         let between = 1.0 / (passes.len() - 1) as f64;
         let across = |pair: &[f64]| {
             let middle = 0.5 * (pair[0] + pair[1]);
@@ -280,16 +277,15 @@ impl Planner<'_, '_, '_> {
         let of_pass = |number: &usize| -> Result<[LeftAt; 2], Lost> {
             let share = passes[*number];
             let (surface, path) = (fields.surface.pass(share), fields.of_pass(*number).pass(share));
-            let blocks = blocks(axes, &path, along);
+            let blocks = straight.blocks(&path, along);
             let mut ends = [LeftAt { shares: [share, 0.0], height: 0.0 }; 2];
             for ((pair, block), (middle, across)) in along.windows(2).zip(&blocks).zip(&middles) {
                 let found = left_by_block(&surface, block, [pair[0], pair[1]], cutter, stock);
-                let from_pole = |axes: &FreeAxes| {
-                    let ends = [pair[0], pair[1]].map(|share| axes.angle_from_pole(&path.at(share)));
-                    ends[0].min(ends[1])
+                let lost = || Lost {
+                    shares: [share, pair[0]],
+                    from_pole: straight.least_from_pole(&path, [pair[0], pair[1]]),
                 };
-                let Cusp { share: at, height } =
-                    found.ok_or_else(|| Lost { shares: [share, pair[0]], from_pole: axes.map(from_pole) })?;
+                let Cusp { share: at, height } = found.ok_or_else(lost)?;
                 let left = LeftAt { shares: [share, at], height: height - stock };
                 ends = [higher(ends[0], left), lower(ends[1], left)];
                 let beside = lowest_beside(across, block, (share, 0.5 * between), 0.5, cutter);
@@ -370,18 +366,6 @@ pub(super) fn positions(
     Ok(count)
 }
 
-/// The motion of the cutter in each block between positions on a pass.
-pub(super) fn blocks(axes: Option<&FreeAxes>, path: &PoseSeries, along: &[f64]) -> Vec<PoseSeries> {
-    let rows: Vec<[f64; 6]> = along.iter().map(|share| path.at(*share)).collect();
-    match axes {
-        None => rows.windows(2).map(|pair| straight(pair[0], pair[1])).collect(),
-        Some(axes) => {
-            let positions = axes.along(&rows);
-            positions.windows(2).map(|pair| axes.straight(&pair[0], &pair[1])).collect()
-        }
-    }
-}
-
 /// Evenly spread ones of many.
 fn few_of(count: usize) -> Vec<usize> {
     let mut few: Vec<usize> = (0..FEW_PASSES).map(|k| k * (count - 1) / (FEW_PASSES - 1)).collect();
@@ -399,24 +383,4 @@ pub(super) fn lower(a: LeftAt, b: LeftAt) -> LeftAt {
 
 pub(super) fn length([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y + z * z).sqrt()
-}
-
-/// The origin goes straight, the axis along a great circle, both evenly: tool-centre control.
-pub(super) fn straight(from: [f64; 6], to: [f64; 6]) -> PoseSeries {
-    let [a, b] = [from, to].map(|row| [row[3], row[4], row[5]]);
-    let dot: f64 = (0..3).map(|k| a[k] * b[k]).sum();
-    let cross = [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-    let angle = length(cross).atan2(dot);
-    let at = |share: f64| {
-        // of no turn the limit
-        let [u, w] = if angle < 1e-8 {
-            [1.0 - share, share]
-        } else {
-            [((1.0 - share) * angle).sin() / angle.sin(), (share * angle).sin() / angle.sin()]
-        };
-        let place = |k: usize| from[k] + share * (to[k] - from[k]);
-        let axis = |k: usize| u * a[k] + w * b[k];
-        [place(0), place(1), place(2), axis(0), axis(1), axis(2)]
-    };
-    PoseSeries::sampled(POINTS_OF_BLOCK, at)
 }

@@ -6,8 +6,8 @@ use rayon::prelude::*;
 use super::Milled;
 use super::obstacles::Kept;
 use super::patch::NEAR;
-use super::plan::straight;
 use super::result::ProvenClearance;
+use super::straight::Straight;
 use super::target::Target;
 use crate::project::remark::{NotDone, NotDoneKind};
 
@@ -23,12 +23,11 @@ pub(super) fn proven(
     tool_centre_control: bool,
     (of, (body_name, body), limit): (&Kept<'_>, (&str, &ToolBody), f64),
 ) -> (ProvenClearance, Option<NotDone>) {
-    let axes = milled.machine.as_ref().filter(|_| !tool_centre_control).map(|machine| &machine.axes);
     // what threads share: the machine itself they cannot
+    let straight = Straight::of_machine(milled.machine.as_ref(), tool_centre_control);
     let (poses, rows) = (&milled.poses, &milled.axes);
-    let block = |pass: usize, k: usize| match axes {
-        Some(axes) => axes.straight(&rows[pass][k], &rows[pass][k + 1]),
-        None => straight(poses[pass][k], poses[pass][k + 1]),
+    let block = |pass: usize, k: usize| {
+        straight.block(&poses[pass][k..=k + 1], rows.get(pass).map_or(&[][..], |rows| &rows[k..=k + 1]))
     };
     // the surface may be nearer than its polynomials; by less than numbers are told it is not looked at
     let off = if of.off > NEAR { of.off } else { 0.0 };

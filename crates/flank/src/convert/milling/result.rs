@@ -47,7 +47,7 @@ pub struct MillResult {
     pub side: Option<SideLeft>,
     /// What straight blocks leave at the most and at the least, beside the stock; negative where they cut too deep.
     pub blocks: Option<[HeightLeft; 2]>,
-    /// Whether the cutter goes straight in a block (tool-centre control), else all axes do.
+    /// Whether the tip and the rotary axes go straight in a block (tool-centre control), else all axes do.
     pub tool_centre_control: bool,
     /// The least and the largest radius across the feed of what the cutter sweeps, mm; null where that is straight, as with the side of a cone.
     pub effective_radius: Option<[f64; 2]>,

@@ -1,5 +1,7 @@
 //! One pass with the straight side of the cutter.
 
+use std::slice::from_ref;
+
 use flank_export::fixed;
 use flank_solver::{
     Chart, LeftOnWay, NormalLine, PoseSeries, SideMotion, SidePass, SideStrip, StraightSide, SurfaceFrame, left_on_way,
@@ -10,10 +12,11 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::cutter::MillingCutter;
-use super::machine::{FreeAxes, Machine};
+use super::machine::Machine;
 use super::patch::Lattice;
 use super::plan::{self, LeftAt, Lost, Plan, evenly, higher, lower};
 use super::result::HeightLeft;
+use super::straight::Straight;
 use super::target::{Fields, Target};
 use super::{Milled, left_at, text};
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -27,10 +30,16 @@ const STARTS: usize = 17;
 const NODES: [usize; 3] = [33, 65, 129];
 /// mm.
 const NEAR: f64 = 1e-11;
-/// The pass begins and ends beyond the strip by what its slanting lines need, by so much more of that ...
+/// The pass begins and ends beyond the strip where lines of contact through its corners cross the middle, by so much more of that ...
 const BEYOND: f64 = 0.15;
-/// ... and by this share of the strip.
+/// ... and by this share of the strip, ...
 const A_LITTLE: f64 = 0.005;
+/// ... or by less, halved so often at the most, where the surface ends before or bends at once.
+const HALVES: i32 = 6;
+/// Steps until it is known where a line of contact crosses the middle, ...
+const CROSSING_STEPS: usize = 40;
+/// ... to this share of the strip.
+const CROSSED: f64 = 1e-4;
 /// Where the side is longer than its lines of contact, its lower end stands below the strip by this share of them.
 const OVERHANG: f64 = 0.05;
 /// How often a cutter is moved along itself to where its side touches.
@@ -115,11 +124,19 @@ struct Strip<'t, 'j, 'g> {
 struct Start {
     /// The turn of the axis about the normal, and how far the first and the last row are along the cutter's lines, mm.
     series: PoseSeries,
-    /// How far the pass goes beyond both ends.
+    /// How far beyond both ends lines of contact through the corners cross the middle ...
+    needed: [f64; 2],
+    /// ... and how far the pass goes beyond them.
     beyond: [f64; 2],
 }
 
 impl Start {
+    /// The same with a share of what the pass goes farther than is needed.
+    fn with_more(self, share: f64) -> Start {
+        let beyond = self.needed.map(|needed| needed + share * (BEYOND * needed + A_LITTLE));
+        Start { beyond, ..self }
+    }
+
     fn at(&self, share: f64) -> [f64; 3] {
         let [turn, first, last, ..] = self.series.at(share.clamp(0.0, 1.0));
         [turn, first, last]
@@ -145,10 +162,8 @@ impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
     /// # Errors
     /// That there is none.
     fn starts(&self) -> Result<Vec<Start>, NotDone> {
-        let [low, high] = self.side.heights;
-        let radius = self.side.radius_at(0.5 * (low + high)) / self.side.half_angle.cos();
-        let directions: Vec<Vec<f64>> =
-            (0..STARTS).map(|column| side_directions(self.rows.at(1, column), self.spindle_left, radius)).collect();
+        let of_column = |column: usize| side_directions(self.rows.at(1, column), self.spindle_left, self.radius());
+        let directions: Vec<Vec<f64>> = (0..STARTS).map(of_column).collect();
         let middle = STARTS / 2;
         let start = |first: &f64| {
             let mut turns = [*first; STARTS];
@@ -179,25 +194,96 @@ impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
     fn start(&self, turns: &[f64; STARTS]) -> Start {
         let of_column = |column: usize| {
             let middle = self.rows.at(1, column);
-            let along = Vector3::from(middle.steps[1]);
-            let across = Vector3::from(middle.normal).cross(&along).normalize();
             let turn = turns[column];
-            // how far the line from the middle is from a row's point of the same share, along the pass, in shares
-            let [[first, before], [last, behind]] = [0, 2].map(|row| {
-                let off = Vector3::from(self.rows.at(row, column).position) - Vector3::from(middle.position);
-                let width = off.dot(&across) * if self.spindle_left { 1.0 } else { -1.0 };
-                let shift = off.dot(&along) / along.norm() - width * turn.tan();
-                [width.abs() / turn.cos(), shift / along.norm()]
+            let [first, last] = [0, 2].map(|row| {
+                let [width, _] = self.seen_along(middle, turn, self.rows.at(row, column).position);
+                width.abs() / turn.cos()
             });
-            [turn, first, last, before, behind, 0.0]
+            [turn, first, last, 0.0, 0.0, 0.0]
         };
         let columns: Vec<[f64; 6]> = (0..STARTS).map(of_column).collect();
-        let reach = |column: usize, sign: f64| {
-            let [_, _, _, before, behind, _] = columns[column];
-            (1.0 + BEYOND) * (sign * before).max(sign * behind).max(0.0) + A_LITTLE
+        let needed = [0, STARTS - 1].map(|column| self.needed(column, turns[column]));
+        Start { series: PoseSeries::through(&columns), needed, beyond: needed }.with_more(1.0)
+    }
+
+    /// How far a place is across the pass from a point of the middle, mm, towards the spindle, and along the pass from the line of contact through
+    /// that point, in shares of the strip's length.
+    fn seen_along(&self, middle: &SurfaceFrame, turn: f64, place: [f64; 3]) -> [f64; 2] {
+        let along = Vector3::from(middle.steps[1]);
+        let across = Vector3::from(middle.normal).cross(&along).normalize();
+        let off = Vector3::from(place) - Vector3::from(middle.position);
+        let width = off.dot(&across) * if self.spindle_left { 1.0 } else { -1.0 };
+        [width, (off.dot(&along) / along.norm() - width * turn.tan()) / along.norm()]
+    }
+
+    /// How far beyond an end of the strip, where the axis is turned so far, lines of contact through its corners cross the middle.
+    fn needed(&self, column: usize, turn: f64) -> f64 {
+        let (end, sign) = if column == 0 { (0.0, -1.0) } else { (1.0, 1.0) };
+        let corner = |row: usize| sign * (self.crossed(end, turn, self.rows.at(row, column).position) - end);
+        corner(0).max(corner(2)).max(0.0)
+    }
+
+    /// The share at which the line of contact through a corner at an end of the strip crosses its middle: by secants, and halves of these where the
+    /// surface has ended. Where that is not found, it is as far as the line at the end says.
+    fn crossed(&self, end: f64, turn: f64, corner: [f64; 3]) -> f64 {
+        let short = |share: f64, turn: f64| {
+            let frame = self.middle_at(share)?;
+            let directions = side_directions(&frame, self.spindle_left, self.radius());
+            let turn =
+                directions.into_iter().min_by(|a, b| (a - turn).abs().total_cmp(&(b - turn).abs())).unwrap_or(turn);
+            Some((self.seen_along(&frame, turn, corner)[1], turn))
         };
-        let beyond = [reach(0, -1.0), reach(STARTS - 1, 1.0)];
-        Start { series: PoseSeries::through(&columns), beyond }
+        let Some((by, turn)) = short(end, turn).filter(|(by, _)| by.abs() > CROSSED) else { return end };
+        let (mut known, mut turn, mut step) = ([end, by], turn, by);
+        for _ in 0..CROSSING_STEPS {
+            // no farther at once than the strip is long
+            step = step.clamp(-1.0, 1.0);
+            let share = known[0] + step;
+            let Some((by, turned)) = short(share, turn) else {
+                step *= 0.5;
+                continue;
+            };
+            let slope = (by - known[1]) / step;
+            (known, turn) = ([share, by], turned);
+            step = if slope == 0.0 { 0.0 } else { -by / slope };
+            if step.abs() < CROSSED {
+                return share + step;
+            }
+        }
+        end + by
+    }
+
+    /// A point of the middle, also beyond the strip; `None` where the surface has none.
+    fn middle_at(&self, share: f64) -> Option<SurfaceFrame> {
+        self.target.lattice([vec![0.5], vec![share]]).ok().map(|lattice| *lattice.at(0, 0))
+    }
+
+    /// Of the side in its middle, from the contact to the axis, mm.
+    fn radius(&self) -> f64 {
+        let [low, high] = self.side.heights;
+        self.side.radius_at(0.5 * (low + high)) / self.side.half_angle.cos()
+    }
+
+    /// The start with as much of what the pass goes farther than is needed as leaves the middle polynomials that are near; where none does, with
+    /// as much as the surface has.
+    ///
+    /// # Errors
+    /// That the surface has no point where the pass has to go.
+    fn on_surface(&self, mut start: Start) -> Result<(Start, PoseSeries), NotDone> {
+        let (mut far, mut missing) = (None, None);
+        for halves in 0..=HALVES {
+            let share = 0.5_f64.powi(halves);
+            start = start.with_more(share);
+            match self.middle(&start) {
+                Ok(middle) if middle.tail() <= NEAR => return Ok((start, middle)),
+                Ok(middle) => far = far.or(Some((share, middle))),
+                Err(why) => missing = Some(why),
+            }
+        }
+        match (far, missing) {
+            (Some((share, middle)), _) => Ok((start.with_more(share), middle)),
+            (None, why) => Err(why.expect("it was tried")),
+        }
     }
 
     /// The middle of the strip as polynomials over the pass.
@@ -243,9 +329,10 @@ impl<'t, 'j, 'g> Strip<'t, 'j, 'g> {
             let way = "take a cutter with a longer side, or mill a narrower strip".to_string();
             return Err(NotDone::new(NotDoneKind::NotMilled, self.target.name(), message).with(vec![way]));
         }
+        let (start, middle) = self.on_surface(start)?;
         let overhang = (0.5 * (length - needed)).min(OVERHANG * needed);
         let strip = SideStrip {
-            middle: self.middle(&start)?,
+            middle,
             spindle_left: self.spindle_left,
             side: self.side,
             heights: places.iter().map(|[_, first, _]| low + (overhang + first) * half_angle.cos()).collect(),
@@ -349,10 +436,14 @@ pub(super) fn milled<'p, 'g>(
     let on_way = left_on_way(&pass.way, &cutter.cutting, &points);
     let told = side_left(target, &map, &on_way, (&pass, &start, side));
     let few: Vec<[f64; 6]> = evenly(9).into_iter().map(|share| pass.way.at(share)).collect();
-    let machine = machine.map(|machine| machine.on_best_elbow(&[few]));
-    let axes = machine.as_ref().filter(|_| !request.tool_centre_control).map(|machine| &machine.axes);
+    let machine = machine.map(|machine| machine.on_best_elbow(from_ref(&few)));
+    let few_at = |k: usize| target.place([0.5, start.share(k as f64 / (few.len() - 1) as f64)]);
+    if let Some(missed) = machine.as_ref().and_then(|machine| machine.unreached(&few, few_at)) {
+        return Err(missed);
+    }
+    let straight = Straight::of_machine(machine.as_ref(), request.tool_centre_control);
     let rows = ROWS.map(|row| PassedRow::new(fields, cutter, &pass.way, row));
-    let blocks = |count: usize| left_by_blocks(target, cutter, (&pass.way, &start, axes), &rows, &evenly(count));
+    let blocks = |count: usize| left_by_blocks(target, cutter, (&pass.way, &start, straight), &rows, &evenly(count));
     let widest = way_length(&pass.way);
     let count = plan::positions(target, widest, blocks)?;
     let along = evenly(count);
@@ -432,11 +523,11 @@ impl PassedRow {
 fn left_by_blocks(
     target: &Target<'_, '_>,
     cutter: &MillingCutter,
-    (way, start, axes): (&PoseSeries, &Start, Option<&FreeAxes>),
+    (way, start, straight): (&PoseSeries, &Start, Straight<'_>),
     rows: &[PassedRow],
     along: &[f64],
 ) -> Result<[LeftAt; 2], NotDone> {
-    let blocks = plan::blocks(axes, way, along);
+    let blocks = straight.blocks(way, along);
     let mut ends = [LeftAt { shares: [0.5, start.share(0.0)], height: 0.0 }; 2];
     for row in rows {
         for (pair, block) in along.windows(2).zip(&blocks) {
@@ -444,11 +535,8 @@ fn left_by_blocks(
             let Some(place) = row.passed_at(middle) else { continue };
             let line = row.line.at(place);
             let Some(exact) = lowest(way, &cutter.cutting, &line, middle) else { continue };
-            let from_pole = |axes: &FreeAxes| {
-                let ends = [pair[0], pair[1]].map(|share| axes.angle_from_pole(&way.at(share)));
-                ends[0].min(ends[1])
-            };
-            let lost = || Lost { shares: [row.share, place], from_pole: axes.map(from_pole) };
+            let lost =
+                || Lost { shares: [row.share, place], from_pole: straight.least_from_pole(way, [pair[0], pair[1]]) };
             let found = lowest(block, &cutter.cutting, &line, 0.5).ok_or_else(|| lost().told(target))?;
             let left = LeftAt { shares: [row.share, place], height: found.height - exact.height };
             ends = [higher(ends[0], left), lower(ends[1], left)];

@@ -78,7 +78,14 @@ impl<'j, 'g> Target<'j, 'g> {
         cutter: &MillingCutter,
         forward: f64,
     ) -> Result<CutterPose, NotDone> {
-        let pose = CutterPose::touching(frame, &cutter.cutting, self.lean(shares), forward);
+        let lean = self.lean(shares);
+        if let Some((name, _)) = [("lead", lean.lead), ("tilt", lean.tilt)].into_iter().find(|of| !of.1.is_finite()) {
+            let message = format!("`{name}` of {} is no number at {}", self.milling.name, self.place(shares));
+            let way =
+                "its formula has no value there: a root or an arcus of what is out of its range, or a division by zero";
+            return Err(NotDone::new(NotDoneKind::NotMilled, self.name(), message).with(vec![way.to_string()]));
+        }
+        let pose = CutterPose::touching(frame, &cutter.cutting, lean, forward);
         pose.map_err(|why| {
             let place = self.place(shares);
             let (message, way) = match why {

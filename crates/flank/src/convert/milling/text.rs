@@ -46,7 +46,11 @@ impl MillResult {
         }
         facts.extend(self.map.iter().flat_map(of_map));
         if let Some([most, least]) = &self.blocks {
-            let how = if self.tool_centre_control { "the cutter goes straight" } else { "the axes go straight" };
+            let how = match (self.axes.is_empty(), self.tool_centre_control) {
+                (true, _) => "the cutter goes straight",
+                (false, true) => "the tip and the rotary axes go straight",
+                (false, false) => "the axes go straight",
+            };
             facts.push(("blocks", format!("{how}; left {}", at(most))));
             facts.push(("", format!("too deep {}", at(&deep(least)))));
         }

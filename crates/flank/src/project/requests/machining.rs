@@ -28,7 +28,7 @@ pub struct MillRequest {
     pub format: Vec<CutterFormat>,
     /// Controls that programs are written for.
     pub nc: Vec<NcDialect>,
-    /// Whether the control keeps the tip on its way, so that blocks are straight in the work.
+    /// Whether the control keeps the tip on its way: in blocks it goes straight in the work, and the rotary axes turn evenly.
     pub tool_centre_control: bool,
     /// Of the cutter along the surface, mm/min.
     pub feed: f64,

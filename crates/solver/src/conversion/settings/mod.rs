@@ -71,7 +71,8 @@ pub const STARTS: u32 = 1024;
 pub struct SettingsFit {
     /// In the order of the problem's settings; mm, radians or numbers.
     pub settings: Vec<f64>,
-    /// Settings that the poses do not determine: they are as usual, or where they happened to be.
+    /// Settings that the poses do not determine: they can change, alone or with others, and the poses stay. As few of them as fix all
+    /// others are as usual, or where they happened to be.
     pub undetermined: Vec<usize>,
     /// For each pose the axes, then how far the tool slides along itself.
     pub moving: Vec<Vec<f64>>,

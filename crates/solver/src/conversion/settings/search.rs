@@ -73,15 +73,24 @@ impl Search {
     pub(super) fn fit(&self, motions: &[Vec<f64>]) -> SettingsFit {
         let mut held = vec![None; self.settings.len()];
         let best = self.search(motions, &held);
-        let loose = self.loose(&best, motions);
+        let unseen = self.unseen(&best, motions);
+        let loose = self.loose(unseen.clone());
         if loose.is_empty() {
             return self.told(best, motions, Vec::new());
         }
         loose.iter().for_each(|&k| held[k] = Some(self.settings[k].usual.unwrap_or(best.settings[k])));
         let settled = self.search(motions, &held);
         // what makes no difference there may make one elsewhere
-        let settled = if settled.cost <= best.cost.max(self.rounding(motions.len())) { settled } else { best };
-        self.told(settled, motions, loose)
+        let is_as_good = settled.cost <= best.cost.max(self.rounding(motions.len()));
+        let (told, unseen) = if is_as_good {
+            let unseen = self.unseen(&settled, motions);
+            (settled, unseen)
+        } else {
+            (best, unseen)
+        };
+        let has_share = |k: &usize| loose.contains(k) || unseen.iter().any(|of| of[*k].abs() > SHARE);
+        let undetermined = (0..self.settings.len()).filter(has_share).collect();
+        self.told(told, motions, undetermined)
     }
 
     pub(super) fn stand(&self, settings: &[f64], motions: &[f64], near: &[f64]) -> Vec<f64> {
@@ -293,13 +302,17 @@ impl Search {
         1e18 * off + beyond + unusual
     }
 
-    /// The settings that can change without changing the poses, as few as fix all others: those with a usual value first.
-    fn loose(&self, state: &State, motions: &[Vec<f64>]) -> Vec<usize> {
+    /// The directions in which settings can change together without changing the poses.
+    fn unseen(&self, state: &State, motions: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let all: Vec<usize> = (0..self.settings.len()).collect();
         let Some(fit) = self.solved(state, motions, &all, EXACT) else { return Vec::new() };
         let largest = fit.directions.first().map_or(0.0, |of| of.size);
         let unseen = fit.directions.iter().filter(|of| of.size <= UNSEEN * largest);
-        let mut directions: Vec<Vec<f64>> = unseen.map(|of| of.shares[..all.len()].to_vec()).collect();
+        unseen.map(|of| of.shares[..all.len()].to_vec()).collect()
+    }
+
+    /// As few settings as fix all others, with the directions that the poses do not see: those with a usual value first.
+    fn loose(&self, mut directions: Vec<Vec<f64>>) -> Vec<usize> {
         let mut loose = Vec::new();
         // Gauss and Jordan: each direction gives up the setting that is easiest to settle
         while let Some((row, pivot)) = self.pivot(&directions, &loose) {
