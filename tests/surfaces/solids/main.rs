@@ -2,6 +2,7 @@
 
 mod asked;
 mod gauges;
+mod grooves;
 mod meshes;
 mod parts;
 mod refused;
