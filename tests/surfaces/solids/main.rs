@@ -7,4 +7,5 @@ mod meshes;
 mod parts;
 mod refused;
 mod spur;
+mod uncut;
 mod volumes;
