@@ -71,7 +71,8 @@ fn meshed(
                 Ok(numbers) => {
                     solids.push(numbers);
                     uncut.extend(uncut::trims_told(solid, &space.untrimmed));
-                    let positions = uncut::in_other_positions(job, solid, &space, session)?;
+                    let positions =
+                        uncut::in_other_positions(solid, &space::jobs_of_spaces(job, solid), &space.nodes, session)?;
                     uncut.extend(uncut::positions_told(solid, &positions));
                 }
                 Err(refused) => not_done.push(refused),

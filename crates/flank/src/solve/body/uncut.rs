@@ -9,7 +9,6 @@ use crate::project::session::Session;
 use crate::project::units::length;
 use crate::solve::body::piece::Piece;
 use crate::solve::body::result::LeftOut;
-use crate::solve::body::space::{Space, jobs_of_spaces};
 use crate::solve::reasons;
 use crate::solve::secondary::{self, Positions};
 use crate::solve::surface::{bound, problem};
@@ -57,18 +56,18 @@ pub(crate) struct Uncut {
     depth: f64,
 }
 
-/// What tools take away in other positions of the surfaces of a body.
+/// What tools take away in other positions of the surfaces of a body, by the jobs of the spaces that differ from each other, and what is known of each.
 ///
 /// # Errors
 /// If the work is cancelled.
 pub(crate) fn in_other_positions(
-    job: &Job<'_>,
     solid: &Solid,
-    space: &Space,
+    jobs: &[Job<'_>],
+    nodes: &[Vec<Nodes>],
     session: Session<'_>,
 ) -> Result<Vec<Uncut>, Failure> {
     let mut all: Vec<Uncut> = Vec::new();
-    for (job, nodes) in jobs_of_spaces(job, solid).iter().zip(&space.nodes) {
+    for (job, nodes) in jobs.iter().zip(nodes) {
         session.check()?;
         let surfaces: Vec<&GeneratedSurface<'_>> = solid.space.iter().map(|at| &job.surfaces[*at]).collect();
         for ((surface, nodes), tool) in surfaces.iter().zip(nodes).zip(secondary::tools_of(job, &surfaces)) {
