@@ -29,6 +29,9 @@ pub(crate) struct Borders<'j, 'g> {
 /// The last surface of a space and the first one of the next, for this space as the next and for it as the one before.
 pub(crate) type Beside<'j, 'g> = [[Piece<'j, 'g>; 2]; 2];
 
+/// Of two surfaces a line each on which an unknown has a value, where there is one.
+type OwnLines = [Option<(usize, f64)>; 2];
+
 /// Two neighbours and their common line.
 #[derive(Clone)]
 struct Joint<'j, 'g> {
@@ -270,16 +273,12 @@ fn nearest(lines: &[Vec<EndLine>; 2]) -> Option<([(usize, f64); 2], f64)> {
 }
 
 /// The lines within a space on which its last surface and its first one end.
-fn lines_within(joints: &[Joint<'_, '_>]) -> [Option<(usize, f64)>; 2] {
+fn lines_within(joints: &[Joint<'_, '_>]) -> OwnLines {
     [joints.last().and_then(|joint| joint.line(1)), joints.first().and_then(|joint| joint.line(0))]
 }
 
 /// The line on which both are at an end of what their tool, or else a motion, runs through; none of those that they have with other neighbours.
-fn ends_in_one_line<'j, 'g>(
-    pieces: [&Piece<'j, 'g>; 2],
-    others: [Option<(usize, f64)>; 2],
-    blank: &Blank,
-) -> Option<Shared<'j, 'g>> {
+fn ends_in_one_line<'j, 'g>(pieces: [&Piece<'j, 'g>; 2], others: OwnLines, blank: &Blank) -> Option<Shared<'j, 'g>> {
     let end_lines = |whose: EndsOf| {
         [0, 1].map(|k| {
             let is_other = |line: &EndLine| {
@@ -320,7 +319,7 @@ fn edges<'j, 'g>(
 /// The line in which the last surface of a space and the first one of the next space end, so that there is no land between them.
 fn edge<'j, 'g>(
     solid: &Solid,
-    (pieces, known, within): (&[Piece<'j, 'g>; 2], Option<&Shared<'j, 'g>>, [Option<(usize, f64)>; 2]),
+    (pieces, known, within): (&[Piece<'j, 'g>; 2], Option<&Shared<'j, 'g>>, OwnLines),
     blank: &Blank,
 ) -> Option<Joint<'j, 'g>> {
     let [last, first] = pieces;
