@@ -150,7 +150,7 @@ pub use solve::body::bricks::mesh;
 pub use solve::body::bricks_result::{BrickNumbers, ElementCounts, MeshResult, SetNumbers, ShaftElements};
 pub use solve::body::mounted::{MountedSolid, Mounting};
 pub use solve::body::result::{
-    BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers,
+    BallNumbers, BarNumbers, FaceNumbers, GaugeNumbers, LeftOut, MeshNumbers, SolidNumbers, SolidResult, SpanNumbers,
     ThicknessNumbers,
 };
 pub use solve::body::solid;

@@ -2,8 +2,10 @@
 
 mod asked;
 mod gauges;
+mod grooves;
 mod meshes;
 mod parts;
 mod refused;
 mod spur;
+mod uncut;
 mod volumes;

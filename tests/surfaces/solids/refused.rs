@@ -139,6 +139,8 @@ fn spaces_that_cross_themselves_are_refused_and_end_where_fillets_meet() {
     let (body, mesh) =
         Asked { changed: Some(("left_fillet, root, right_fillet", "left_fillet, right_fillet")), ..asked }.only();
     assert_eq!(euler_characteristic(&mesh), 0);
+    let [left_out] = &body.left_out[..] else { panic!("{body}") };
+    assert!(left_out.surface == "root" && left_out.depth_mm > 0.1, "{body}");
     assert!((body.gauges.root_diameter_mm.expect("round") - 2.0 * root).abs() < 1e-7, "{root} {:?}", body.gauges);
     let tip = spur.radius() + 3.6;
     let [form, _] = spur.trochoid(ALPHA);

@@ -32,6 +32,17 @@ fn a_helical_gear_has_a_volume_in_proportion_to_its_width() {
     assert!((two / one - 2.0).abs() < 1e-10, "{one} {two}");
 }
 
+/// A bore lies nearer to what is sampled than the ends of a wide gear do, of which the middle alone is.
+#[test]
+fn how_far_a_gear_is_sampled_does_not_matter() {
+    let wide = [("face_width", "60 mm"), ("bore", "31 mm")];
+    let short = Some(("z: -face_width / 2 .. face_width / 2", "z: -face_width / 4 .. face_width / 4"));
+    let volume =
+        |set: &[(&str, &str)], changed| Asked { changed, ..Asked::new(BODIES, "helical", set) }.only().0.volume_mm3;
+    let (one, three) = (volume(&[("bore", "31 mm")], None), volume(&wide, short));
+    assert!((three / one - 3.0).abs() < 1e-9, "{one} {three}");
+}
+
 /// Moments of a gear with so many teeth are the same about all axes across its own, and those of a full ring are a ring's.
 #[test]
 fn inertia_is_that_of_a_ring_with_spaces() {

@@ -65,6 +65,8 @@ pub enum NotDoneKind {
     NotMet,
     /// The surfaces of a solid bound no body.
     NoBody,
+    /// A body has steel that a tool of its job takes away.
+    NotCut,
     /// A body is not cut into bricks.
     NoBricks,
     /// Balls of the size that was asked for measure no gear.

@@ -39,7 +39,7 @@ pub(super) fn outside_keep(surface: &GeneratedSurface<'_>, condition: usize) -> 
     })
 }
 
-pub(super) fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: CutBy) -> String {
+pub(crate) fn by_what(job: &Job<'_>, surface: &GeneratedSurface<'_>, cutter: CutBy) -> String {
     match cutter {
         CutBy::ItsTool => "by the tool itself, beyond the singular line of the envelope (undercut)".to_string(),
         CutBy::ItsToolElsewhere(by) => {

@@ -29,6 +29,9 @@ pub(crate) struct Borders<'j, 'g> {
 /// The last surface of a space and the first one of the next, for this space as the next and for it as the one before.
 pub(crate) type Beside<'j, 'g> = [[Piece<'j, 'g>; 2]; 2];
 
+/// Of two surfaces a line each on which an unknown has a value, where there is one.
+type OwnLines = [Option<(usize, f64)>; 2];
+
 /// Two neighbours and their common line.
 #[derive(Clone)]
 struct Joint<'j, 'g> {
@@ -67,7 +70,8 @@ impl<'j, 'g> Borders<'j, 'g> {
         };
         let joints = (1..pieces.len()).map(joint).collect::<Result<Vec<_>, Failure>>()?;
         let known = first.and_then(|first| first.edges.as_ref()).map(|edges| &edges[0].shared);
-        let edges = edges(beside, |pieces| edge(solid, (pieces, known), blank));
+        let within = lines_within(&joints);
+        let edges = edges(beside, |pieces| edge(solid, (pieces, known, within), blank));
         let mut borders = Borders { joints, edges, unknowns: Vec::new() };
         borders.unknowns =
             (0..pieces.len()).map(|k| borders.unknown(solid, &pieces[k], k, blank)).collect::<Result<_, Failure>>()?;
@@ -77,10 +81,22 @@ impl<'j, 'g> Borders<'j, 'g> {
     /// The same with teeth that end where the flanks of neighbouring spaces meet.
     pub(crate) fn meeting_in_an_edge(self, beside: &[Beside<'j, 'g>], blank: &Blank) -> Option<Borders<'j, 'g>> {
         let edges = edges(beside, |pieces| {
-            let course = Course::new(pieces.each_ref(), blank, &ALONG)?;
+            let [last, first] = lines_within(&self.joints);
+            let within = last.zip(first).map(|(last, first)| [last, first]);
+            let course = Course::beside(pieces.each_ref(), within, blank, &ALONG)
+                .filter(|course| !self.has_within(course, blank))?;
             Some(Joint { pieces: pieces.clone(), shared: Shared::Meeting(Rc::new(course)) })
         })?;
         Some(Borders { edges: Some(edges), ..self })
+    }
+
+    /// Whether the line on which the last surface of a space and the first one of the next meet is one within the space: of a single space, which
+    /// is its own neighbour, they may meet on its ground, too.
+    fn has_within(&self, course: &Course<'_, '_>, blank: &Blank) -> bool {
+        let Some((joint, Some(met))) = self.joints.last().zip(Some(course.at(blank, &ALONG))) else { return false };
+        let ground = joint.positions(1, blank);
+        let is_same = |(met, ground): (&[SurfacePoint; 2], &[f64; 3])| apart(met[0].position, *ground) <= SAME_LINE;
+        ground.is_some_and(|ground| met.iter().zip(&ground).all(is_same))
     }
 
     /// Whether teeth end in an edge.
@@ -172,12 +188,29 @@ impl<'j, 'g> Shared<'j, 'g> {
 }
 
 impl Joint<'_, '_> {
-    /// The unknown that has a value on the common line.
+    /// The unknown of one of them that has a value on the common line.
     fn unknown(&self, own: usize) -> Option<usize> {
+        self.line(own).map(|(unknown, _)| unknown)
+    }
+
+    /// The same with that value.
+    fn line(&self, own: usize) -> Option<(usize, f64)> {
         match &self.shared {
-            Shared::Ends(lines) => Some(lines[own].0),
-            Shared::Onto { ending, line } if *ending == own => Some(line.0),
+            Shared::Ends(lines) => Some(lines[own]),
+            Shared::Onto { ending, line } if *ending == own => Some(*line),
             Shared::Onto { .. } | Shared::Meeting(_) => None,
+        }
+    }
+
+    /// Points of the common line, as those of one of them.
+    fn positions(&self, own: usize, blank: &Blank) -> Option<Vec<[f64; 3]>> {
+        match &self.shared {
+            Shared::Ends(lines) => Some(positions(&self.pieces[own].on_line(lines[own], blank, &ALONG))),
+            Shared::Onto { ending, line } => Some(positions(&self.pieces[*ending].on_line(*line, blank, &ALONG))),
+            Shared::Meeting(course) => {
+                let met = course.at(blank, &ALONG)?;
+                Some(met.iter().map(|of| of[own].position).collect())
+            }
         }
     }
 
@@ -217,7 +250,7 @@ fn shared<'j, 'g>(solid: &Solid, pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> 
     if let Some(course) = Course::new(pieces, blank, &ALONG) {
         return Ok(Shared::Meeting(Rc::new(course)));
     }
-    if let Some(ends) = ends_in_one_line(pieces, blank) {
+    if let Some(ends) = ends_in_one_line(pieces, [None; 2], blank) {
         return Ok(ends);
     }
     Err(match nearest {
@@ -239,12 +272,26 @@ fn nearest(lines: &[Vec<EndLine>; 2]) -> Option<([(usize, f64); 2], f64)> {
     pairs.map(|(a, b)| ([(a.unknown, a.value), (b.unknown, b.value)], gap(a, b))).min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The line on which both are at an end of what their tool, or else a motion, runs through.
-fn ends_in_one_line<'j, 'g>(pieces: [&Piece<'j, 'g>; 2], blank: &Blank) -> Option<Shared<'j, 'g>> {
-    let of_tool = pieces.map(|piece| piece.end_lines(EndsOf::Tool, blank, &ALONG));
+/// The lines within a space on which its last surface and its first one end.
+fn lines_within(joints: &[Joint<'_, '_>]) -> OwnLines {
+    [joints.last().and_then(|joint| joint.line(1)), joints.first().and_then(|joint| joint.line(0))]
+}
+
+/// The line on which both are at an end of what their tool, or else a motion, runs through; none of those that they have with other neighbours.
+fn ends_in_one_line<'j, 'g>(pieces: [&Piece<'j, 'g>; 2], others: OwnLines, blank: &Blank) -> Option<Shared<'j, 'g>> {
+    let end_lines = |whose: EndsOf| {
+        [0, 1].map(|k| {
+            let is_other = |line: &EndLine| {
+                others[k].is_some_and(|(of, at)| line.unknown == of && (line.value - at).abs() <= SAME_LINE)
+            };
+            let lines = pieces[k].end_lines(whose, blank, &ALONG);
+            lines.into_iter().filter(|line| !is_other(line)).collect::<Vec<EndLine>>()
+        })
+    };
+    let of_tool = end_lines(EndsOf::Tool);
     let same = |lines: &[Vec<EndLine>; 2]| nearest(lines).filter(|(_, gap)| *gap <= SAME_LINE);
     let shared = same(&of_tool).or_else(|| {
-        let [a, b] = pieces.map(|piece| piece.end_lines(EndsOf::Motions, blank, &ALONG));
+        let [a, b] = end_lines(EndsOf::Motions);
         let [first, second] = of_tool;
         same(&[[first, a].concat(), [second, b].concat()])
     });
@@ -272,7 +319,7 @@ fn edges<'j, 'g>(
 /// The line in which the last surface of a space and the first one of the next space end, so that there is no land between them.
 fn edge<'j, 'g>(
     solid: &Solid,
-    (pieces, known): (&[Piece<'j, 'g>; 2], Option<&Shared<'j, 'g>>),
+    (pieces, known, within): (&[Piece<'j, 'g>; 2], Option<&Shared<'j, 'g>>, OwnLines),
     blank: &Blank,
 ) -> Option<Joint<'j, 'g>> {
     let [last, first] = pieces;
@@ -282,8 +329,10 @@ fn edge<'j, 'g>(
     let pitch = last.known.iter().map(arc).fold(0.0, f64::max) * last.arrangement.pitch(solid.teeth);
     let gap = last.known.iter().map(near).fold(f64::INFINITY, f64::min);
     let may = gap < NEAR * pitch;
-    let found =
-        || known.and_then(|known| known.alike([last, first], blank)).or_else(|| ends_in_one_line([last, first], blank));
+    let found = || {
+        let alike = known.and_then(|known| known.alike([last, first], blank));
+        alike.or_else(|| ends_in_one_line([last, first], within, blank))
+    };
     let shared = may.then(found).flatten().filter(|shared| is_left(shared, last, blank))?;
     Some(Joint { pieces: pieces.clone(), shared })
 }

@@ -24,6 +24,7 @@ use crate::solve::body::bricks_result::{BrickNumbers, MeshResult, exact_volume};
 use crate::solve::body::file_of;
 use crate::solve::body::refusal;
 use crate::solve::body::space::{self, Space};
+use crate::solve::body::uncut;
 use crate::solve::dataset::header;
 
 /// Bytes that a mesh may take with what its files are made from: what machines of today can spare.
@@ -62,12 +63,18 @@ fn meshed(
 ) -> Result<MeshResult, Failure> {
     let header = header(&[job], &request.jobs, origin);
     let mut folder = Folder::at(&request.out, origin, session.monitor());
-    let (mut solids, mut not_done) = (Vec::new(), Vec::new());
+    let (mut solids, mut not_done, mut uncut) = (Vec::new(), Vec::new(), Vec::new());
     for solid in &job.solids {
         let _working = session.begin(format!("meshing {}", solid.name))?;
         match space::body(job, solid, session) {
             Ok(space) => match one(job, solid, &space, (request, &header), &mut folder)? {
-                Ok(numbers) => solids.push(numbers),
+                Ok(numbers) => {
+                    solids.push(numbers);
+                    uncut.extend(uncut::trims_told(solid, &space.untrimmed));
+                    let positions =
+                        uncut::in_other_positions(solid, &space::jobs_of_spaces(job, solid), &space.nodes, session)?;
+                    uncut.extend(uncut::positions_told(solid, &positions));
+                }
                 Err(refused) => not_done.push(refused),
             },
             Err(failure) => not_done.push(refusal::no_body(solid, failure)?),
@@ -78,6 +85,7 @@ fn meshed(
         let formats = request.format.iter().map(|format| format.name());
         told.details.extend(solid.into_iter().flat_map(|solid| folder.older(&file_of(job, solid), formats.clone())));
     }
+    not_done.extend(uncut);
     Ok(MeshResult {
         job: job.name.clone(),
         spec: shown_path(request.jobs.file()),

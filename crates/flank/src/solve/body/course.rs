@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use flank_solver::{Blank, Intersection, Line, Meeting, SurfacePoint};
 
-use crate::solve::body::piece::{Piece, apart};
+use crate::solve::body::piece::{Piece, SAME_LINE, apart};
 
 /// How far along a space the line is followed at once, as a share: a twentieth of a turn of a worm's thread that winds three times.
 const STRIDE: f64 = 1.0 / 64.0;
@@ -22,6 +22,8 @@ pub(crate) struct Course<'j, 'g> {
     /// The unknown of the first by which lines are told apart.
     across: usize,
     intersection: Intersection,
+    /// An unknown of each with its value on another line that both have in common.
+    other: Option<[(usize, f64); 2]>,
     /// By their shares along the space, in this order.
     found: RefCell<Vec<(f64, Meeting)>>,
 }
@@ -29,17 +31,32 @@ pub(crate) struct Course<'j, 'g> {
 impl<'j, 'g> Course<'j, 'g> {
     /// Of surfaces that meet at all of some shares along.
     pub(crate) fn new(pieces: [&Piece<'j, 'g>; 2], blank: &Blank, along: &[f64]) -> Option<Course<'j, 'g>> {
-        let [first, second] = pieces;
-        let whole = |course: Option<Course<'j, 'g>>| course.filter(|course| course.at(blank, along).is_some());
-        let turned = || Some(Course { is_swapped: true, ..whole(Course::across([second, first], blank))? });
-        whole(Course::across(pieces, blank)).or_else(turned)
+        Course::beside(pieces, None, blank, along)
     }
 
-    fn across([first, second]: [&Piece<'j, 'g>; 2], blank: &Blank) -> Option<Course<'j, 'g>> {
+    /// The same where they have another line in common, on which an unknown of each has a value.
+    pub(crate) fn beside(
+        pieces: [&Piece<'j, 'g>; 2],
+        other: Option<[(usize, f64); 2]>,
+        blank: &Blank,
+        along: &[f64],
+    ) -> Option<Course<'j, 'g>> {
+        let [first, second] = pieces;
+        let whole = |course: Option<Course<'j, 'g>>| course.filter(|course| course.at(blank, along).is_some());
+        let swapped = other.map(|[a, b]| [b, a]);
+        let turned = || Some(Course { is_swapped: true, ..whole(Course::across([second, first], swapped, blank))? });
+        whole(Course::across(pieces, other, blank)).or_else(turned)
+    }
+
+    fn across(
+        [first, second]: [&Piece<'j, 'g>; 2],
+        other: Option<[(usize, f64); 2]>,
+        blank: &Blank,
+    ) -> Option<Course<'j, 'g>> {
         let across = first.across_tool(blank)?;
         let intersection = Intersection::new([&first.bound(), &second.bound()], first.across(across, blank)).ok()?;
         let pieces = [first.clone(), second.clone()];
-        Some(Course { pieces, is_swapped: false, across, intersection, found: RefCell::default() })
+        Some(Course { pieces, is_swapped: false, across, intersection, other, found: RefCell::default() })
     }
 
     /// A point at each share along, as points of both; `None` where one is not found.
@@ -61,6 +78,12 @@ impl<'j, 'g> Course<'j, 'g> {
         if self.is_swapped { [second, first] } else { [first, second] }
     }
 
+    fn is_on_other(&self, meeting: &Meeting) -> bool {
+        let points = [&meeting.first, &meeting.second];
+        let is_at = |k: usize, (unknown, value): (usize, f64)| (points[k].unknowns[unknown] - value).abs() <= SAME_LINE;
+        self.other.is_some_and(|of| (0..2).all(|k| is_at(k, of[k])))
+    }
+
     /// Follows the line from where it is known to a share.
     fn reach(&self, blank: &Blank, to: f64) -> Option<()> {
         let off = |(share, _): &&(f64, Meeting)| (share - to).abs();
@@ -79,7 +102,8 @@ impl<'j, 'g> Course<'j, 'g> {
         let [first, second] = self.pieces.each_ref();
         let along = |point: &SurfacePoint| (first.along_of(blank, point) - share).abs();
         let least = |meetings: Vec<Meeting>, off: &dyn Fn(&Meeting) -> f64| {
-            meetings.into_iter().min_by(|a, b| off(a).total_cmp(&off(b)))
+            let meetings = meetings.into_iter().filter(|meeting| !self.is_on_other(meeting));
+            meetings.min_by(|a, b| off(a).total_cmp(&off(b)))
         };
         let line = |near: &SurfacePoint| Line { from: [near.unknowns[self.across], share], direction: [1.0, 0.0] };
         let near: Vec<&SurfacePoint> = first.known.iter().collect();

@@ -13,6 +13,7 @@ pub(crate) mod result;
 pub(crate) mod shape;
 pub(crate) mod smooth;
 pub(crate) mod space;
+pub(crate) mod uncut;
 
 use flank_chain_dsl::{Job, Solid};
 use flank_export::{BodyMesh, GearBody, Header, PlacedBody, PlacedFrame};
@@ -67,8 +68,8 @@ fn built(
     for solid in &job.solids {
         let _working = session.begin(format!("building {}", solid.name))?;
         match one(job, solid, (request, &header), (&mut folder, session)) {
-            Ok((numbers, shapes, no_sides)) => {
-                not_done.extend(no_sides);
+            Ok((numbers, shapes, told)) => {
+                not_done.extend(told);
                 let too_far = numbers.step_deviation_mm.zip(request.step).filter(|(off, allowed)| off > allowed);
                 not_done.extend(too_far.map(|(off, allowed)| {
                     let message = format!(
@@ -131,8 +132,12 @@ fn one(
     solid: &Solid,
     (request, header): (&SolidRequest, &Header),
     (folder, session): (&mut Folder<'_>, Session<'_>),
-) -> Result<(SolidNumbers, Shapes, Option<NotDone>), Failure> {
-    let space::Space { body, names, off: error, into_steel } = space::body(job, solid, session)?;
+) -> Result<(SolidNumbers, Shapes, Vec<NotDone>), Failure> {
+    let space = space::body(job, solid, session)?;
+    let uncut = uncut::in_other_positions(solid, &space::jobs_of_spaces(job, solid), &space.nodes, session)?;
+    let mut not_done = uncut::trims_told(solid, &space.untrimmed);
+    not_done.extend(uncut::positions_told(solid, &uncut));
+    let space::Space { body, names, off: error, into_steel, .. } = space;
     let part = match request.part {
         // from the middle of its space to the middle of the same one a gear of one tooth goes all around
         _ if body.teeth() == 1 && body.arrangement().is_closed() => BodyPart::Gear,
@@ -141,6 +146,10 @@ fn one(
         SolidPart::Space => BodyPart::Space,
     };
     let (mesh, off) = meshed(&solid.name, (&body, part), request.deviation)?;
+    let numbers = SolidNumbers::new((&solid.name, &solid.frame, names), (&body, error), request.density, (&mesh, off));
+    if let Some(apart) = numbers.volumes_apart((&body, part)) {
+        return Err(refusal::contradicted(solid, apart));
+    }
     let file = file_of(job, solid);
     let written =
         BodyMesh { name: &solid.name, frame: &solid.frame, vertices: &mesh.vertices, triangles: &mesh.triangles };
@@ -151,14 +160,12 @@ fn one(
             MeshFormat::ThreeMf => folder.body_3mf(&file, header, &[(written, PlacedFrame::default())])?,
         }
     }
-    let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &names, (&body, part), tolerance));
-    let (faces, no_sides) = match faces.transpose() {
-        Ok(faces) => (faces, None),
-        Err(beyond) => {
-            let older = request.step.map(|_| folder.older(&file, ["step"].into_iter())).unwrap_or_default();
-            (None, Some(refusal::no_sides(solid, &beyond).with_more(older)))
-        }
-    };
+    let faces = request.step.map(|tolerance| smooth::gear(&solid.name, &numbers.surfaces, (&body, part), tolerance));
+    let faces = faces.transpose().unwrap_or_else(|beyond| {
+        let older = request.step.map(|_| folder.older(&file, ["step"].into_iter())).unwrap_or_default();
+        not_done.push(refusal::no_sides(solid, &beyond).with_more(older));
+        None
+    });
     if let Some(faces) = faces.as_ref().filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed)) {
         folder.body_step(&file, header, faces)?;
     }
@@ -166,10 +173,12 @@ fn one(
         step_deviation_mm: faces.as_ref().map(|faces| faces.deviation),
         gauges: gauges::measured(&body, request.ball),
         into_steel,
-        ..SolidNumbers::new((&solid.name, &solid.frame, names), (&body, error), request.density, (&mesh, off))
+        cut_away_mm: uncut::deepest(&uncut),
+        left_out: uncut::left_out(&uncut),
+        ..numbers
     };
     let faces = faces.filter(|faces| request.step.is_some_and(|allowed| faces.deviation <= allowed));
-    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }, no_sides))
+    Ok((numbers, Shapes { name: solid.name.clone(), frame: solid.frame.clone(), body, mesh, faces }, not_done))
 }
 
 /// The closed surface of a part, and how far it is off.

@@ -121,6 +121,11 @@ impl<'j, 'g> Piece<'j, 'g> {
         }
     }
 
+    /// The job that has it: where spaces differ, that of its space.
+    pub(crate) fn job(&self) -> &'j Job<'g> {
+        self.job
+    }
+
     /// The two coordinates of the section of the outline.
     pub(crate) fn section(&self) -> [Expr<'g>; 2] {
         let [x, y, z] = self.surface.surface.position.0;

@@ -42,6 +42,16 @@ pub(crate) fn no_body(solid: &Solid, failure: Failure) -> Result<NotDone, Failur
     }
 }
 
+/// A body whose exact surfaces and whose mesh do not enclose the same.
+pub(crate) fn contradicted(solid: &Solid, [exact, mesh]: [f64; 2]) -> Failure {
+    let message = format!(
+        "the surfaces of `{}` bound no body: by themselves they enclose {exact:.4} mm\u{b3}, and the mesh between them encloses {mesh:.4} mm\u{b3}",
+        solid.name
+    );
+    let way = "surfaces of `of:` in their order from one flank to the other, and an outline that has the ground of the spaces in it";
+    refused(solid, message, &[way])
+}
+
 /// A part that has no sides where its outline goes beyond its spaces, as that of a shaft does that is longer than its teeth.
 pub(crate) fn no_sides(solid: &Solid, BeyondEnds { segment, by }: &BeyondEnds) -> NotDone {
     let message = format!(
@@ -138,6 +148,17 @@ pub(crate) fn faulty(solid: &Solid, (blank, names, has_edge): (&Blank, &[&str], 
             solid,
             format!("the spaces of `{of}` run into each other by {} at {rho:.3} mm from {from}", length(overlap)),
             &["fewer teeth, or narrower spaces"],
+        ),
+        BodyFault::Crossed { charts: [first, second], place: [z, rho] } if first == second => refused(
+            solid,
+            format!(
+                "the spaces of `{of}` cross themselves: `{}` crosses itself at z {z:.4} mm, {rho:.4} mm from {from}",
+                names[first]
+            ),
+            &[&format!(
+                "narrower ranges of the tool of `{0}`, or a `keep` in `sample {0}`, that leave one sheet of it",
+                names[first]
+            )],
         ),
         BodyFault::Crossed { charts: [first, second], place: [z, rho] } => refused(
             solid,
@@ -267,4 +288,39 @@ pub(crate) fn wider(surface: &GeneratedSurface<'_>, beyond: &[(usize, f64)]) -> 
     };
     let each: Vec<String> = beyond.iter().map(far).collect();
     (format!("beyond the ranges of their unknowns, {}", each.join(", ")), beyond.iter().map(range).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use flank_expr::Graph;
+
+    use super::*;
+    use crate::project::Project;
+    use crate::project::monitor::Unwatched;
+    use crate::project::requests::JobSelection;
+    use crate::project::spec;
+
+    #[test]
+    fn a_surface_that_crosses_itself_is_told_as_that() {
+        let path = format!("{}/../../specs/pairs/spur_pair.chain", env!("CARGO_MANIFEST_DIR"));
+        let which = JobSelection::all(Project::open(path, Arc::new(flank_chain_dsl::Disk)));
+        let graph = Graph::new();
+        let (_, jobs) = spec::jobs(&graph, &which, &Unwatched).expect("it is shipped");
+        let solid = &jobs[0].solids[0];
+        let blank = Blank { outline: blank::outline(solid), ends: [3, 0, 1] };
+        let fault = |charts: [usize; 2]| {
+            let failure =
+                faulty(solid, (&blank, &["a", "b", "c"], false), BodyFault::Crossed { charts, place: [1.0, 20.0] });
+            no_body(solid, failure).expect("a body that is refused")
+        };
+        let told = fault([1, 1]);
+        assert!(
+            told.message.ends_with("cross themselves: `b` crosses itself at z 1.0000 mm, 20.0000 mm from the axis"),
+            "{told}"
+        );
+        assert!(told.details[0].contains("`keep` in `sample b`"), "{told}");
+        assert!(fault([2, 0]).details[0].starts_with("leave `b` out"), "{told}");
+    }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use flank_solver::{Body, ClosedMesh, MassProperties};
+use flank_solver::{Body, BodyPart, ClosedMesh, MassProperties};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -43,6 +43,11 @@ pub struct SolidNumbers {
     /// Those of them whose normals point into the body, as those of a tool do that is shown by `move`. Where such a surface is measured, right
     /// and left flank, and material and its lack, are in each other's place.
     pub into_steel: Vec<String>,
+    /// How deep its surfaces lie at the most in steel that their tools take away in other positions, mm: a body that they do not leave. Null
+    /// where they take none away.
+    pub cut_away_mm: Option<f64>,
+    /// Surfaces of the job that the body leaves out, in whose tools its own surfaces lie.
+    pub left_out: Vec<LeftOut>,
     /// How far the polynomials through exact points, by which everything below is measured, are off between these at the most, mm.
     pub error_mm: f64,
     /// Of the whole gear, as for all that follows.
@@ -64,6 +69,15 @@ pub struct SolidNumbers {
     pub step_deviation_mm: Option<f64>,
     /// What gauges and calipers find half-way along the teeth.
     pub gauges: GaugeNumbers,
+}
+
+/// A surface that a body leaves out, as the tip of a tool may be whose roundings cross before it.
+#[derive(Clone, Debug, PartialEq, Serialize, JsonSchema)]
+pub struct LeftOut {
+    /// The surface.
+    pub surface: String,
+    /// How deep surfaces of the body lie at the most in its tool, mm.
+    pub depth_mm: f64,
 }
 
 /// A closed mesh.
@@ -188,6 +202,8 @@ impl SolidNumbers {
             teeth: body.teeth(),
             surfaces,
             into_steel: Vec::new(),
+            cut_away_mm: None,
+            left_out: Vec::new(),
             error_mm: error,
             volume_mm3: volume,
             area_mm2: area,
@@ -205,6 +221,28 @@ impl SolidNumbers {
             step_deviation_mm: None,
             gauges: GaugeNumbers::default(),
         }
+    }
+}
+
+/// How many times as far as the middles of its edges the triangles of a mesh lie off the body at the most.
+const BEYOND_EDGES: f64 = 2.0;
+/// What is left of a volume by the rounding of its sums, as a share.
+const ROUNDING: f64 = 1e-9;
+
+impl SolidNumbers {
+    /// The volume of a part by its exact surfaces and by its mesh, where there is more between them than lies between these surfaces and the
+    /// mesh: then they bound no body. Nothing of a part whose share of the volume is not known, as where teeth differ.
+    pub(crate) fn volumes_apart(&self, (body, part): (&Body, BodyPart)) -> Option<[f64; 2]> {
+        let share = match part {
+            BodyPart::Gear => 1.0,
+            BodyPart::Tooth | BodyPart::Space if body.distinct() == 1 => 1.0 / f64::from(body.teeth()),
+            BodyPart::Tooth | BodyPart::Space => return None,
+        };
+        let exact = share * self.volume_mm3;
+        let skin = BEYOND_EDGES * (self.mesh.deviation_mm + self.error_mm) * self.mesh.area_mm2;
+        // not so of what is no number, either
+        let is_near = (self.mesh.volume_mm3 - exact).abs() <= skin + ROUNDING * exact.abs();
+        (!is_near).then_some([exact, self.mesh.volume_mm3])
     }
 }
 
@@ -258,6 +296,15 @@ impl fmt::Display for SolidNumbers {
                 f,
                 "  normals  of {} point into the steel, as those of a tool do: `envelope(…)`, over no motion where the tool has the form, points out of it",
                 self.into_steel.join(", ")
+            )?;
+        }
+        if let Some(depth) = self.cut_away_mm {
+            writeln!(f, "  cut away in other positions of the tool, by up to {depth:.6} mm: no tool leaves this body")?;
+        }
+        for LeftOut { surface, depth_mm } in &self.left_out {
+            writeln!(
+                f,
+                "  left out {surface}, in whose tool other surfaces lie by up to {depth_mm:.6} mm: right if that has no such piece"
             )?;
         }
         let told = |step: f64| format!("  faces    off by at most {} in the STEP file\n", units::off(step));
@@ -325,4 +372,40 @@ fn beside_tip(below: f64) -> String {
 /// Without what rounding leaves of zero.
 fn rounded(mm: f64) -> f64 {
     if mm.abs() < 5e-7 { 0.0 } else { mm }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use flank_expr::Graph;
+
+    use super::*;
+    use crate::project::Project;
+    use crate::project::monitor::Unwatched;
+    use crate::project::requests::JobSelection;
+    use crate::project::session::{EvaluatorOptions, Session};
+    use crate::project::spec;
+    use crate::solve::body::space;
+
+    /// A mesh that is 10 um off leaves out less than a skin as thick; what encloses a few hundredths less bounds another body.
+    #[test]
+    fn volumes_that_contradict_each_other_are_noticed() {
+        let path = format!("{}/../../specs/pairs/spur_pair.chain", env!("CARGO_MANIFEST_DIR"));
+        let which = JobSelection::all(Project::open(path, Arc::new(flank_chain_dsl::Disk)));
+        let graph = Graph::new();
+        let (_, jobs) = spec::jobs(&graph, &which, &Unwatched).expect("it is shipped");
+        let session = Session::new(EvaluatorOptions::default(), &Unwatched);
+        let solid = &jobs[0].solids[0];
+        let space::Space { body, names, off, .. } = space::body(&jobs[0], solid, session).expect("it has a body");
+        for part in [BodyPart::Gear, BodyPart::Tooth, BodyPart::Space] {
+            let (mesh, deviation) = body.mesh(part, 0.01, 1 << 24).expect("there is room");
+            let numbers = SolidNumbers::new(("", "", names.clone()), (&body, off), 7850.0, (&mesh, deviation));
+            assert_eq!(numbers.volumes_apart((&body, part)), None, "{part:?}");
+            for other in [0.98, 1.02, 3.0, f64::NAN] {
+                let wrong = SolidNumbers { volume_mm3: other * numbers.volume_mm3, ..numbers.clone() };
+                assert!(wrong.volumes_apart((&body, part)).is_some(), "{part:?} {other}");
+            }
+        }
+    }
 }

@@ -12,6 +12,7 @@ use crate::solve::body::borders::{Beside, Borders};
 use crate::solve::body::ends;
 use crate::solve::body::piece::{Piece, positions};
 use crate::solve::body::refusal::{self, refused};
+use crate::solve::body::uncut::{self, Nodes, Uncut};
 
 /// How far charts may be off between their points, mm: below what any file or number shows.
 const EXACT: f64 = 1e-8;
@@ -27,12 +28,17 @@ pub(crate) struct Space {
     pub(crate) off: f64,
     /// Which of the names have normals that point into the body.
     pub(crate) into_steel: Vec<String>,
+    /// The points of each chart of each space that differs from the first one, and of that, in the order of the solid.
+    pub(crate) nodes: Vec<Vec<Nodes>>,
+    /// What surfaces that are none of the body's trim of it.
+    pub(crate) untrimmed: Vec<Uncut>,
 }
 
-/// A chart, and its surface's normal in the middle times the chart's own: negative where they point to different sides.
+/// A chart with its points, and its surface's normal in the middle times the chart's own: negative where they point to different sides.
 #[derive(Clone)]
 struct Charted {
     chart: Chart,
+    nodes: Nodes,
     facing: f64,
 }
 
@@ -55,6 +61,8 @@ struct Between {
     off: f64,
     /// Of the charts in the order in which they are given.
     facing: Vec<f64>,
+    /// Of all spaces.
+    nodes: Vec<Vec<Nodes>>,
 }
 
 /// # Errors
@@ -85,8 +93,9 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
     };
     let faulty = |fault: BodyFault, has_edge: bool| outside(refusal::faulty(solid, (&blank, &names, has_edge), fault));
     let first = between(solid, (&spaces, &borders, &blank), session).map_err(outside)?;
-    let (body, off, facing) = match first.body {
-        Ok(body) => (body, first.off, first.facing),
+    let unknowns: Vec<Vec<usize>> = borders.iter().map(|borders| borders.unknowns.clone()).collect();
+    let (body, off, facing, nodes) = match first.body {
+        Ok(body) => (body, first.off, first.facing, first.nodes),
         Err(fault) => {
             let has_edge = borders[0].has_edge();
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
@@ -95,8 +104,8 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
                 .zip(&beside)
                 .map(|(borders, beside)| borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed));
             let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault, has_edge))?;
-            let Between { body, off, facing } = between(solid, (&spaces, &borders, &blank), session)?;
-            (body.map_err(|fault| faulty(fault, true))?, off, facing)
+            let Between { body, off, facing, nodes } = between(solid, (&spaces, &borders, &blank), session)?;
+            (body.map_err(|fault| faulty(fault, true))?, off, facing, nodes)
         }
     };
     let names: Vec<String> = names.into_iter().map(str::to_string).collect();
@@ -104,7 +113,13 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
     let turned = if body.is_reversed() { -1.0 } else { 1.0 };
     let into_steel =
         names.iter().zip(&facing).filter(|(_, facing)| turned * **facing < 0.0).map(|(name, _)| name.clone());
-    Ok(Space { into_steel: into_steel.collect(), names, off, body })
+    let mut untrimmed: Vec<Uncut> = Vec::new();
+    for ((pieces, unknowns), nodes) in spaces.iter().zip(&unknowns).zip(&nodes) {
+        session.check()?;
+        let of_piece = |k: usize| uncut::by_trims(solid, (&pieces[k], unknowns[k], &blank), &nodes[k], session);
+        (0..pieces.len()).flat_map(of_piece).for_each(|more| uncut::add(&mut untrimmed, more));
+    }
+    Ok(Space { into_steel: into_steel.collect(), names, off, body, nodes, untrimmed })
 }
 
 /// That the flanks of a space lie outside the outline, if they do.
@@ -118,7 +133,7 @@ fn elsewhere(solid: &Solid, pieces: &[Piece<'_, '_>], blank: &Blank) -> Option<F
 }
 
 /// The job of each space that differs from the first one, and of that: its parameter says which space it is.
-fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
+pub(crate) fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
     let Some(each) = &solid.each else { return vec![job.clone()] };
     let of_space = |space: u32| {
         let mut job = Job { name: format!("{} {each} {space}", job.name), ..job.clone() };
@@ -208,9 +223,11 @@ fn between(
             let off = tails.into_iter().flatten().fold(0.0, f64::max);
             let arrangement = blank::arrangement(solid);
             let facing = charts[0].iter().map(|charted| charted.facing).collect();
+            let nodes =
+                charts.iter().map(|space| space.iter().map(|charted| charted.nodes.clone()).collect()).collect();
             let charts = charts.into_iter().map(|space| space.into_iter().map(|charted| charted.chart).collect());
             let body = Body::new(blank.clone(), (arrangement, solid.teeth), charts.collect(), borders[0].has_edge());
-            return Ok(Between { body, off, facing });
+            return Ok(Between { body, off, facing, nodes });
         }
     }
 }
@@ -246,7 +263,9 @@ fn chart(
     // of odd numbers of rows and columns there is a point in the middle
     let normal = Vector3::from(points.point(rows / 2 * columns + columns / 2).normal);
     let [_, across, far] = chart.frame([0.5; 2]).map(Vector3::from);
-    Ok(Charted { facing: normal.dot(&far.cross(&across)), chart })
+    let nodes =
+        Nodes { points: (0..points.len()).map(|k| points.point(k)).collect(), targets, counts: [rows, columns] };
+    Ok(Charted { facing: normal.dot(&far.cross(&across)), chart, nodes })
 }
 
 /// The values of an unknown where a surface reaches the tip.
