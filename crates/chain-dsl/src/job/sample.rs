@@ -20,7 +20,7 @@ const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
 /// The one coordinate that comes round to itself.
 const POLAR_ANGLE: &str = "polar_angle";
 /// What every point has.
-const OF_POINTS: [&str; 8] = ["x", "y", "z", "rho", POLAR_ANGLE, "nx", "ny", "nz"];
+pub(crate) const OF_POINTS: [&str; 8] = ["x", "y", "z", "rho", POLAR_ANGLE, "nx", "ny", "nz"];
 
 /// Reports an unknown of surfaces that is called as a coordinate of their points: a sample could mean either.
 pub(crate) fn check_unknown(context: &mut Context<'_>, name: &Name, what: &str) {
