@@ -366,8 +366,10 @@ impl Piece<'_> {
                     depth += 1;
                     depth == 1
                 }
+                // what stands in further parentheses is a value
+                ")" | "]" if depth <= 1 => break,
                 ")" | "]" => {
-                    depth = depth.saturating_sub(1);
+                    depth -= 1;
                     false
                 }
                 "," => depth == 1,
