@@ -264,6 +264,50 @@ fn angles_of_a_bevel_gear_are_those_of_its_normals() {
     assert_eq!(farther.len(), 2);
 }
 
+/// A comma ends a property of a line for forges, and a colon the properties.
+#[test]
+fn names_of_files_are_escaped_for_forges() {
+    let folder = folder("test_annotate");
+    written(&folder, "a,b 5%.chain", &broken());
+    let told = text(&tested(&folder, "", &["a,b 5%.chain", "--annotate"]).stdout);
+    let line = told.lines().find(|line| line.starts_with("::error ")).expect("a line for forges");
+    assert!(line.starts_with("::error file=a%2Cb 5%25.chain,line="), "{line}");
+}
+
+/// A surface that is only moved has no tool that touches it; all its points are solved.
+#[test]
+fn values_that_a_surface_has_nowhere_are_not_its_points_fault() {
+    let folder = folder("test_no_value");
+    let spec = "machine bench {
+            axis lift : linear
+            frame bed
+            frame part in bed = translate_z(lift)
+            fix lift = 0 mm
+        }
+        tool plate {
+            surface face(u: length in -5 mm .. 5 mm, v: length in -1 mm .. 1 mm) {
+                at = [u, v, 0 mm]
+                body towards [0, 0, -1]
+            }
+        }
+        job j {
+            machine m = bench
+            tool t = plate
+            mount t on m.part
+            surface s in m.bed = move(t.face)
+            sample s { u: -3 mm .. 3 mm by 5, v: -0.5 mm .. 0.5 mm by 3 }
+            expect all solved
+            expect s: induced_k1 near 0 / 1 mm within 1 / 1 mm
+        }";
+    written(&folder, "s.chain", spec);
+    let told = text(&tested(&folder, "", &[]).stdout);
+    assert!(
+        told.contains("found: no point of s has this value") && told.contains("1 of 2 expectations failed"),
+        "{told}"
+    );
+    assert!(told.contains("induced curvatures are of an envelope"), "{told}");
+}
+
 /// A cylinder of 10 mm whose points slide by 5 deg: they leave it nowhere, and the way of each is a chord.
 #[test]
 fn points_that_slide_along_their_surface_do_not_move_it() {
