@@ -358,6 +358,8 @@ fn check_definitions(context: &mut Context<'_>, items: &Items) {
     functions.sort_by_key(|function| function.name.span);
     for function in functions {
         context.begin_item();
+        let names = function.arguments.iter().map(|(name, _)| name);
+        context.are_distinct(names.chain(function.lets.iter().map(|binding| &binding.name)));
         let mut scope = Scope::new();
         for (name, written) in &function.arguments {
             let value = match (context.dimension(&written.dimension), written.size) {

@@ -314,7 +314,14 @@ fn names_of_definitions_are_free() {
     let long = (x.sin() * t1 + x).sqrt() / t1;
     let text = listing_of(&[long * x, long + t1], Style::Text);
     assert_eq!(text.definitions[0].name, "t2");
+    // nor are those of variables that stand in other lines of the same page
+    let y = graph.variable("y");
+    let long = (x.sin() * y + x).sqrt() / y;
+    let text = listing_of(&[long * x, long + y], Style::Text);
+    assert_eq!(text.definitions[0].name, "t2");
     // t_1 and t1 are one symbol in LaTeX
+    let graph = Graph::new();
+    let x = graph.variable("x");
     let t_1 = graph.variable("t_1");
     let long = (x.sin() * t_1 + x).sqrt() / t_1;
     let latex = listing_of(&[long * x, long + t_1], Style::Latex);

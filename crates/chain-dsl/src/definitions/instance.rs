@@ -134,7 +134,7 @@ impl<'a, 'g> Binder<'a, 'g> {
     /// The variable that stands for it; nothing if something is wrong (and reported).
     fn bound(&mut self, context: &mut Context<'g>, param: &Param, scope: &Scope<'g>) -> Option<Value<'g>> {
         let dimension = context.dimension(&param.dimension)?;
-        if param.is_error && is_count(&param.dimension) {
+        if param.is_error && param.dimension.is_count() {
             let message = format!("{} is a count: an error may be as small as it likes", shown_name(param));
             let help = "a whole number that may differ is a parameter, such as `param name : count = 0`";
             context.report(Diagnostic::new(Code::WrongDimension, param.dimension.span, message).help(help));
@@ -175,7 +175,10 @@ impl<'a, 'g> Binder<'a, 'g> {
         if given.as_ref().is_some_and(|given| first.is_some_and(|first| given.definition != first)) {
             self.other.push(variable);
         }
-        let is_count = is_count(&param.dimension);
+        let is_count = param.dimension.is_count();
+        if is_count {
+            context.set_count(variable);
+        }
         if matches!(self.source, Source::Standing { .. }) {
             let (low, high) = range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
             self.standing.push(RangedVariable {
@@ -339,7 +342,7 @@ impl<'a, 'g> Binder<'a, 'g> {
         span: Span,
     ) -> Result<Option<(f64, f64)>, Refused> {
         let what = shown_name(param);
-        let is_count = is_count(&param.dimension) && value.is_finite();
+        let is_count = param.dimension.is_count() && value.is_finite();
         if is_count && value.fract() != 0.0 {
             let message = format!("{what} is a count: it must be a whole number, not {value}");
             context.report(Diagnostic::new(Code::WrongDimension, span, message));
@@ -361,6 +364,11 @@ impl<'a, 'g> Binder<'a, 'g> {
             return Ok(None);
         };
         let Some((low, high)) = context.range(range, scope, dimension, what) else { return Ok(None) };
+        if param.dimension.is_count() && low.ceil() > high.floor() {
+            let message = format!("{what} is a count: no whole number lies in {low} .. {high}");
+            context.report(Diagnostic::new(Code::WrongDimension, range.span, message));
+            return Err(Refused);
+        }
         if value < low || value > high {
             let ends = [(value, &range.high), (low, &range.low), (high, &range.high)];
             let [value, low, high] = ends.map(|(value, written)| shown_like(value, dimension, written));
@@ -477,7 +485,7 @@ fn checked_step<'g>(
     dimension: crate::values::dimension::Dimension,
 ) -> Result<Option<f64>, Refused> {
     let (what, span) = (format!("the step of {}", shown_name(param)), step.span);
-    if is_count(&param.dimension) {
+    if param.dimension.is_count() {
         let message = format!("{} is a count: it goes in whole steps, and has no step of its own", shown_name(param));
         let step = Diagnostic::new(Code::WrongDimension, span, message).help("leave the step out");
         context.report(step.rewriting(Rewriting::Without("step", span)));
@@ -498,11 +506,6 @@ fn checked_step<'g>(
     Ok(Some(value))
 }
 
-/// Whether a dimension is that of something that is counted.
-pub(crate) fn is_count(dimension: &Dimension) -> bool {
-    dimension.factors.iter().any(|(name, _)| name.node == "count")
-}
-
 /// Whether a parameter is a profile.
 pub(crate) fn is_profile(dimension: &Dimension) -> bool {
     matches!(dimension.factors.as_slice(), [(name, _)] if name.node == "profile")
@@ -512,7 +515,7 @@ pub(crate) fn is_profile(dimension: &Dimension) -> bool {
 fn with_dimensions<'p>(context: &mut Context<'_>, params: impl Iterator<Item = &'p Param>) -> String {
     let each = params.map(|param| {
         let of = match &param.dimension {
-            dimension if is_count(dimension) => "count".to_string(),
+            dimension if dimension.is_count() => "count".to_string(),
             dimension if is_profile(dimension) => "profile".to_string(),
             dimension => context.dimension(dimension).map_or(String::new(), |of| of.to_string()),
         };

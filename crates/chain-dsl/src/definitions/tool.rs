@@ -7,7 +7,7 @@ use flank_expr::geometry::{Edge, Surface, Vector3};
 use flank_expr::{Expr, Interval};
 
 use crate::definitions::implicit_surface;
-use crate::definitions::instance::{Binder, Overrides, Source, is_count, is_profile};
+use crate::definitions::instance::{Binder, Overrides, Source, is_profile};
 use crate::definitions::material_side::{self, Places};
 use crate::definitions::profile;
 use crate::definitions::requirement;
@@ -255,6 +255,11 @@ fn own_names<'g>(
         let value = context.evaluate(value, &scope);
         scope.insert(name.node.clone(), value);
     }
+    let names = own.iter().map(|(name, _)| *name);
+    let names = names.chain(written.parameters.iter().map(|parameter| parameter.name()));
+    if !context.are_distinct(names.chain(written.lets.iter().map(|binding| &binding.name))) {
+        return None;
+    }
     for parameter in &written.parameters {
         sample::check_unknown(context, parameter.name(), "surface parameter");
         let bounded = match (parameter, along) {
@@ -386,12 +391,15 @@ pub(crate) fn bounded<'g>(
     let dimension = context.dimension(&parameter.dimension)?;
     let what = format!("`{name}`");
     let (low, high) = context.range(&parameter.range, scope, dimension, &what).unwrap_or((f64::NAN, f64::NAN));
-    let is_count = is_count(&parameter.dimension);
+    let is_count = parameter.dimension.is_count();
     for end in [low, high].into_iter().filter(|end| is_count && end.is_finite() && end.fract() != 0.0) {
         let message = format!("{what} is a count: it runs between whole numbers, not to {end}");
         context.report(Diagnostic::new(Code::WrongDimension, parameter.range.span, message));
     }
     let variable = context.variable(name.clone(), role, f64::NAN);
     context.set_range(variable, Interval::new(low, high));
+    if is_count {
+        context.set_count(variable);
+    }
     Some(RangedVariable { name, variable, dimension, low, high, is_count, piece: None })
 }

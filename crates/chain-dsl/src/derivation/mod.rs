@@ -158,13 +158,13 @@ impl Page {
         }
     }
 
-    fn surface(&mut self, surface: &GeneratedSurface<'_>, job: &Job<'_>) {
+    fn surface<'g>(&mut self, surface: &GeneratedSurface<'g>, job: &Job<'g>) {
         self.heading(&format!("surface {} in {}", surface.name, surface.frame));
         surface.doc.iter().for_each(|line| self.text(line));
         self.chain(&surface.generation, &surface.frame);
         self.tool(&surface.generation);
         self.fixed_frame(surface, &job.machines);
-        self.motions(surface);
+        self.motions(surface, job);
         self.text(&format!("position in {}, mm:", surface.frame));
         self.vector("r", surface.surface.position);
         self.text(&format!("unit normal in {}, out of the body:", surface.frame));
@@ -237,7 +237,7 @@ impl Page {
         }
     }
 
-    fn motions(&mut self, surface: &GeneratedSurface<'_>) {
+    fn motions<'g>(&mut self, surface: &GeneratedSurface<'g>, job: &Job<'g>) {
         let generation = &surface.generation;
         let (tool_frame, frame) = (generation.tool_frame(), &surface.frame);
         // a sweep has no equation for its first motion; the constraints of a tool that is an envelope itself come first
@@ -257,7 +257,7 @@ impl Page {
             self.text(&format!("equation of meshing for {plain}: n_t . (omega x r_t + v) = 0, the same in every frame, here as in the shortest one"));
             let name = graph.listing(&[motion], self.style, "t").values[0].clone();
             self.zero(&format!("f_{{{name}}}"), meshing);
-            self.closed_forms(meshing, &surface.surface.unknowns);
+            self.closed_forms(meshing, &surface.surface.unknowns, &job.bindings());
         }
     }
 
@@ -271,11 +271,15 @@ impl Page {
         }
     }
 
-    /// The unknowns that an equation can be solved for by hand: those that it is linear in.
-    fn closed_forms(&mut self, equation: Expr<'_>, unknowns: &[Expr<'_>]) {
+    /// The unknowns that an equation can be solved for by hand: those that it is linear in. What they are multiplied by may be zero for the
+    /// values of the job: then the equation does not give them.
+    fn closed_forms<'g>(&mut self, equation: Expr<'g>, unknowns: &[Expr<'g>], values: &[(Expr<'g>, Expr<'g>)]) {
         for &unknown in unknowns {
             let Some(linear) = equation.linear_in(unknown) else { continue };
             let graph = equation.graph();
+            if graph.substitute(&[linear.slope], values)[0].as_constant() == Some(0.0) {
+                continue;
+            }
             let listing = graph.listing(&[unknown, linear.intercept, linear.slope], self.style, "t");
             let [name, intercept, slope] = [0, 1, 2].map(|k| listing.values[k].clone());
             self.text(&format!("it is linear in {unknown}, which it gives in closed form:"));

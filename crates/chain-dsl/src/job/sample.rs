@@ -9,7 +9,7 @@ use crate::diagnostics::source::{Name, Span};
 use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
 use crate::syntax::ast::{self, Expression, ExpressionKind, SampleEntry, SampleValues};
-use crate::values::context::{Context, quoted};
+use crate::values::context::{Context, Role, quoted};
 use crate::values::dimension::{Dimension, shown};
 use crate::values::tables;
 use crate::values::value::{Scope, Value};
@@ -20,7 +20,7 @@ const CORNERS: [&str; 4] = ["toe_root", "heel_root", "toe_tip", "heel_tip"];
 /// The one coordinate that comes round to itself.
 const POLAR_ANGLE: &str = "polar_angle";
 /// What every point has.
-const OF_POINTS: [&str; 8] = ["x", "y", "z", "rho", POLAR_ANGLE, "nx", "ny", "nz"];
+pub(crate) const OF_POINTS: [&str; 8] = ["x", "y", "z", "rho", POLAR_ANGLE, "nx", "ny", "nz"];
 
 /// Reports an unknown of surfaces that is called as a coordinate of their points: a sample could mean either.
 pub(crate) fn check_unknown(context: &mut Context<'_>, name: &Name, what: &str) {
@@ -247,6 +247,30 @@ pub(super) fn scope_at_points<'g>(
     Some(scope)
 }
 
+/// Reports an expression at the points of a surface in which something moves that no point of it has: an axis, or a motion that the surface
+/// is not made over.
+pub(super) fn follows_from_points<'g>(
+    context: &mut Context<'g>,
+    (value, span): (Expr<'g>, Span),
+    surface: &GeneratedSurface<'g>,
+    what: &str,
+) -> Option<()> {
+    let is_of_points = |variable: &Expr<'g>| {
+        let role = context.role(*variable);
+        let is_known = role.is_some_and(|role| role.stands_still() || role == Role::Quantity);
+        is_known || surface.surface.unknowns.contains(variable)
+    };
+    let variables = context.variables_of(&[value]);
+    let Some(other) = variables.into_iter().find(|variable| !is_of_points(variable)) else { return Some(()) };
+    let role = context.role(other).map_or("variable", Role::described);
+    let message =
+        format!("{what} must follow from the points of `{}`, but depends on the {role} `{other}`", surface.name);
+    let unknowns: Vec<&str> = surface.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
+    let help = format!("a point has its coordinates, such as `rho` and `z`, and {} of its surface", quoted(&unknowns));
+    context.report(Diagnostic::new(Code::NotConstant, span, message).help(help));
+    None
+}
+
 pub(super) fn coordinate<'g>(
     context: &mut Context<'g>,
     (key, definition): (&Name, Option<&Expression>),
@@ -270,6 +294,7 @@ pub(super) fn coordinate<'g>(
             }
             return None;
         };
+        follows_from_points(context, (value, definition.span), surface, &format!("`{}`", key.node))?;
         return Some(Coordinate { name: key.node.clone(), value, dimension });
     }
     let found = surface.coordinate(&key.node);

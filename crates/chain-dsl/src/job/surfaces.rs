@@ -324,7 +324,16 @@ impl<'g> Builder<'_, 'g> {
             return false;
         }
         let free: Vec<&str> = free.into_iter().map(|motion| motion.name.as_str()).collect();
-        if !free.is_empty() {
+        let is_moved = matches!(&written.value.kind, ast::ExpressionKind::Call(call) if call.function.node == "move");
+        if is_moved && !free.is_empty() {
+            let message = format!("the tool moves with {}, but what `move` takes stands still", quoted(&free));
+            let help = format!(
+                "what the tool leaves while it moves is an `envelope` over {}; or drive its axes with what stands still",
+                quoted(&free)
+            );
+            context.report(Diagnostic::new(Code::FreeMotion, written.value.span, message).help(help));
+            fine = false;
+        } else if !free.is_empty() {
             let (them, all) = (if free.len() == 1 { "it" } else { "them" }, quoted(&free));
             let message = format!("the tool also moves with {all}, but the envelope is not over {them}");
             let over: Vec<&str> = motions.iter().map(|(over, _)| over.name.as_str()).chain(free).collect();

@@ -206,6 +206,12 @@ impl Loader {
     fn follow(&mut self, from_shown: &Path, from_real: &Path, used: &Spanned<String>) {
         let here = from_real.parent().unwrap_or(Path::new("/"));
         let shown = tidy(&from_shown.parent().unwrap_or(Path::new("")).join(&used.node));
+        if used.node.is_empty() {
+            self.loaded.lacks_files = true;
+            let help = "write its path from the folder of this file on, as `../machines/generator.chain`";
+            let nameless = Diagnostic::new(Code::UnreadableFile, used.span, "no file is named here").help(help);
+            return self.loaded.diagnostics.push(nameless);
+        }
         if Path::new(&used.node).is_absolute() {
             self.loaded.lacks_files = true;
             let message = format!("`{}` is an absolute path, which leads elsewhere on another machine", used.node);

@@ -411,6 +411,13 @@ pub struct Dimension {
     pub span: Span,
 }
 
+impl Dimension {
+    /// Whether it is that of something that is counted.
+    pub(crate) fn is_count(&self) -> bool {
+        matches!(self.factors.as_slice(), [(name, 1)] if name.node == "count")
+    }
+}
+
 /// `a.b.c`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Path {

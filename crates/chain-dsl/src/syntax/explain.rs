@@ -62,6 +62,8 @@ impl<'s> Mistake<'s> {
             Self::stray_bracket,
             Self::frame_in_its_place,
             Self::no_tolerance,
+            Self::pose_without_place,
+            Self::expect_with_colon,
         ];
         special.iter().find_map(|explain| explain(self)).unwrap_or_else(|| self.unexpected())
     }
@@ -145,6 +147,27 @@ impl<'s> Mistake<'s> {
         let is_open = self.scan.say(self.range.start) == "expect" && self.expected.contains(&Rule::kw_within);
         let report = is_open.then(|| self.unexpected()).filter(|report| report.help.is_none())?;
         Some(report.help("say by how much it may differ, such as `within 1 um`"))
+    }
+
+    /// `expect work in bed near translate_x(3 mm) within 1 um`: the grammar takes `within` for another transform.
+    fn pose_without_place(&self) -> Option<Diagnostic> {
+        let is_pose = self.scan.say(self.range.start) == "expect" && self.expected == [Rule::open_paren];
+        (is_pose && self.before() == "within").then(|| {
+            let place = self.scan.place(self.found - 1);
+            let start = Span { end: place.start, ..place };
+            Diagnostic::new(Code::Syntax, place, "expected `at (…)` before `within`: where the axes stand")
+                .help("give the free axes their values, as in `at (X: 10 mm)`; `at ()` where none moves the frame")
+                .cure("write `at ()` before it", start, "at () ")
+        })
+    }
+
+    /// `expect: all solved`
+    fn expect_with_colon(&self) -> Option<Diagnostic> {
+        let is_first = self.found == self.range.start + 1 && self.scan.say(self.range.start) == "expect";
+        (is_first && self.say() == ":").then(|| {
+            let help = "leave it out; a `:` stands behind a surface, as in `expect flank: rho in 46 mm .. 52 mm`";
+            self.here("no `:` stands behind `expect`").help(help).cure("leave `:` out", self.place(), "")
+        })
     }
 
     /// `z: 0 mm by 3` in a sample.

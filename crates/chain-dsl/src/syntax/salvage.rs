@@ -340,13 +340,20 @@ impl Piece<'_> {
     fn sample(&self) -> Sample {
         let entry = SampleEntry { key: self.nameless(), definition: None, values: SampleValues::Value(self.error()) };
         Sample {
-            surfaces: self.paths().into_iter().map(|surface| Sampled { surface, name: None }).collect(),
+            surfaces: self.paths().into_iter().map(|surface| self.sampled(surface)).collect(),
             each: None,
             entries: vec![entry],
             keeps: Vec::new(),
             limits: Vec::new(),
             span: self.span(),
         }
+    }
+
+    /// What is sampled, with the name behind its `as`.
+    fn sampled(&self, surface: Path) -> Sampled {
+        let behind = self.range.clone().find(|&index| self.scan.place(index).start >= surface.span.end);
+        let named = behind.filter(|&index| self.scan.say(index) == "as" && self.scan.is_name(index + 1));
+        Sampled { surface, name: named.map(|index| self.name(index + 1)) }
     }
 
     /// The names right after the first opening parenthesis and after each comma on its level.
@@ -359,8 +366,10 @@ impl Piece<'_> {
                     depth += 1;
                     depth == 1
                 }
+                // what stands in further parentheses is a value
+                ")" | "]" if depth <= 1 => break,
                 ")" | "]" => {
-                    depth = depth.saturating_sub(1);
+                    depth -= 1;
                     false
                 }
                 "," => depth == 1,

@@ -78,8 +78,10 @@ pub struct Vocabulary {
     pub dimensions: &'static [&'static str],
     /// Functions, transforms, ways to make a surface.
     pub functions: Vec<&'static str>,
-    /// What every point has, and what samples and milling passes run by.
+    /// What every point has.
     pub coordinates: &'static [&'static str],
+    /// What the flank of a blank is asked for by in a sample, and passes run by.
+    pub of_outlines: &'static [&'static str],
     /// What may become of a point.
     pub statuses: &'static [&'static str],
     /// What is known of a contact once it is solved.
@@ -101,7 +103,8 @@ pub(super) fn vocabulary() -> Vocabulary {
         units: UNITS,
         dimensions: DIMENSIONS,
         functions: crate::definitions::index::functions(),
-        coordinates: &crate::definitions::index::OF_POINTS,
+        coordinates: &crate::job::sample::OF_POINTS,
+        of_outlines: &crate::definitions::index::OUTLINE,
         statuses: &crate::job::expect::STATUSES,
         of_contacts: crate::job::expect::numbers_of_contacts().collect(),
         of_solids: crate::job::expect::numbers_of_solids().collect(),

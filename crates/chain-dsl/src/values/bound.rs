@@ -175,6 +175,9 @@ impl<'g> Context<'g> {
             Constant::Moves(_) => (Role::MovingArgument, f64::NAN),
         };
         let variable = self.variable(name.node.clone(), role, value);
+        if self.is_count(given) {
+            self.set_count(variable);
+        }
         if let (Role::MovingArgument, Ok(range)) = (role, self.enclosure(given)) {
             self.set_range(variable, range);
         }

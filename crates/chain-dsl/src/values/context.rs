@@ -45,7 +45,7 @@ pub(crate) enum Role {
 
 impl Role {
     /// Whether it has one value in a job.
-    fn stands_still(self) -> bool {
+    pub(crate) fn stands_still(self) -> bool {
         matches!(self, Role::Parameter | Role::StandingArgument)
     }
 
@@ -85,6 +85,8 @@ pub(crate) struct Context<'g> {
     values: Vec<f64>,
     /// Where those lie that move, if it is known.
     ranges: Vec<Option<Interval>>,
+    /// Which of them are declared as counts, by their numbers: their values are whole, and as negative as their ranges say.
+    counts: HashSet<usize>,
     diagnostics: Vec<Diagnostic>,
     /// Errors among them.
     errors: usize,
@@ -144,6 +146,7 @@ impl<'g> Context<'g> {
             roles: Vec::new(),
             values: Vec::new(),
             ranges: Vec::new(),
+            counts: HashSet::new(),
             diagnostics: Vec::new(),
             errors: 0,
             reported: HashSet::new(),
@@ -218,6 +221,21 @@ impl<'g> Context<'g> {
         }
     }
 
+    /// Whether the names of one block are each given once; those that are not are reported.
+    pub(crate) fn are_distinct<'n>(&mut self, names: impl IntoIterator<Item = &'n Name>) -> bool {
+        let mut seen: HashMap<&str, Span> = HashMap::new();
+        let mut are_distinct = true;
+        for name in names {
+            if let Some(first) = seen.get(name.node.as_str()) {
+                self.duplicate(name, *first);
+                are_distinct = false;
+            } else {
+                seen.insert(&name.node, name.span);
+            }
+        }
+        are_distinct
+    }
+
     /// Keeps a finding, unless the same was found at the same place before (a definition is looked at once by itself and
     /// once for each use), or there are enough of them.
     pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
@@ -274,6 +292,16 @@ impl<'g> Context<'g> {
         if let Some(variable) = variable.as_variable() {
             self.ranges[variable.index()] = Some(range);
         }
+    }
+
+    /// Says that a variable is declared as a count.
+    pub(crate) fn set_count(&mut self, variable: Expr<'g>) {
+        self.counts.extend(variable.as_variable().map(|variable| variable.index()));
+    }
+
+    /// Whether an expression is a variable that is declared as a count.
+    pub(crate) fn is_count(&self, expr: Expr<'g>) -> bool {
+        expr.as_variable().is_some_and(|variable| self.counts.contains(&variable.index()))
     }
 
     /// The variables of an expression, each with its value or where it lies.

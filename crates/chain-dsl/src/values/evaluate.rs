@@ -356,10 +356,15 @@ impl<'g> Context<'g> {
             self.report(Diagnostic::new(Code::WrongDimension, spans.1, message));
             return Value::Poison;
         }
-        let whole = exponent.as_constant().filter(|value| value.fract() == 0.0 && value.abs() <= 64.0);
+        let whole =
+            exponent.as_constant().filter(|value| value.fract() == 0.0 && value.abs() <= limits::POWER.most as f64);
         match whole {
             Some(whole) => Value::Scalar(base.powi(whole as i32), base_dimension.power(whole as i32)),
             None if base_dimension.length == 0 => Value::Scalar(base.pow(exponent), Dimension::NUMBER),
+            None if exponent.as_constant().is_some_and(|value| value.fract() == 0.0) => {
+                self.report(limits::POWER.exceeded(spans.1));
+                Value::Poison
+            }
             None => {
                 let message = format!("a {base_dimension} can only be raised to a whole constant power");
                 let help = match self.constant(exponent) {
@@ -572,14 +577,17 @@ impl<'g> Context<'g> {
     ) -> Option<Value<'g>> {
         let dimension = self.dimension(&wanted.dimension)?;
         let Some(size) = wanted.size else {
-            return Some(Value::Scalar(self.require(value, dimension, written.span, what)?, dimension));
+            let value = self.require(value, dimension, written.span, what)?;
+            return Some(Value::Scalar(self.counted(value, wanted, written, what)?, dimension));
         };
         match value {
             Value::Poison => None,
             Value::Vector(parts) if parts.len() == size => {
                 let mut found = Vec::new();
                 for (k, (part, written)) in parts.iter().zip(written.parts(size)).enumerate() {
-                    let part = self.require(part, dimension, written.span, format_args!("element {k} of {what}"))?;
+                    let what = format_args!("element {k} of {what}");
+                    let part = self.require(part, dimension, written.span, what)?;
+                    let part = self.counted(part, wanted, written, what)?;
                     found.push(Value::Scalar(part, dimension));
                 }
                 Some(Value::Vector(found))
@@ -590,6 +598,35 @@ impl<'g> Context<'g> {
                 None
             }
         }
+    }
+
+    /// A value as it is, unless a count is wanted and it is none: counts are whole, from 0 where no range of their own says otherwise, and what
+    /// moves is one only as a motion that counts.
+    fn counted(
+        &mut self,
+        value: Expr<'g>,
+        wanted: &ast::Type,
+        written: &Expression,
+        what: impl fmt::Display,
+    ) -> Option<Expr<'g>> {
+        if !wanted.dimension.is_count() || self.is_count(value) {
+            return Some(value);
+        }
+        let help = "what need not be a whole number from 0 is a `number`";
+        let (code, message) = match self.constant_kept(value) {
+            Constant::Known(number) if number.is_finite() && number.fract() != 0.0 => {
+                (Code::WrongDimension, format!("{what} is a count: it must be a whole number, not {number}"))
+            }
+            Constant::Known(number) if number < 0.0 => {
+                (Code::WrongDimension, format!("{what} is a count, and {number} is below 0"))
+            }
+            Constant::Moves(name) => {
+                (Code::NotConstant, format!("{what} is a count and must stand still, but depends on {name}"))
+            }
+            Constant::Known(_) | Constant::Unknown => return Some(value),
+        };
+        self.report(Diagnostic::new(code, written.span, message).help(help));
+        None
     }
 }
 

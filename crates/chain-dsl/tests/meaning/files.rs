@@ -103,6 +103,15 @@ fn unreadable_files_are_told() {
 }
 
 #[test]
+fn a_use_of_no_file_says_so() {
+    let folder = project("nameless", &[("a.chain", "use \"\"")]);
+    let graph = Graph::new();
+    let found = compile_file(&graph, &folder.join("a.chain"), &[]).diagnostics;
+    let told: Vec<(Code, &str)> = found.iter().map(|finding| (finding.code, finding.message.as_str())).collect();
+    assert_eq!(told, [(Code::UnreadableFile, "no file is named here")]);
+}
+
+#[test]
 fn files_that_are_used_are_counted() {
     let limit = |files: Vec<(String, String)>| {
         let files: Vec<(&str, &str)> = files.iter().map(|(path, text)| (path.as_str(), text.as_str())).collect();

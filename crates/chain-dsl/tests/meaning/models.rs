@@ -543,3 +543,48 @@ fn a_closed_loop_gives_unknown_axes_their_laws() {
         assert!((speed + cosine_speed / thigh.sin()).abs() < 1e-14, "{at}: {speed}");
     }
 }
+
+/// A rack whose parameters are called as a page calls its parts. The equation of meshing is linear in `t2` with the factor sin(tilt), which is
+/// zero: the page gives no closed form for it, and one where the rack is tilted.
+#[test]
+fn a_derivation_has_names_of_its_own_and_divides_by_nothing_that_is_zero() {
+    let page = |tilt: &str| {
+        let text = format!(
+            "machine planer {{
+                axis Y : linear
+                axis C : rotary
+                frame bed
+                frame ram in bed = translate(36 mm, Y, 0 mm)
+                frame table in bed = rotate_z(C)
+            }}
+            tool rack {{
+                param pressure_angle : angle = 20 deg
+                param tilt : angle = {tilt}
+                surface flank(t1: length in -3 mm .. 3 mm, t2: length in -10 mm .. 10 mm) {{
+                    at = [
+                        t1 * cos(pressure_angle), t2 * sin(tilt) - t1 * sin(pressure_angle), t2 * cos(tilt)
+                    ]
+                    body towards [0, 1, 0]
+                }}
+            }}
+            job gear {{
+                machine m = planer
+                tool r = rack
+                mount r on m.ram
+                motion roll : angle in -30 deg .. 30 deg
+                drive m.Y, m.C = 36 mm * roll, roll
+                surface flank in m.table = envelope(r.flank, over: roll)
+            }}"
+        );
+        let graph = Graph::new();
+        derivation(&compiled(&graph, &text).jobs[0], Style::Text)
+    };
+    for (tilt, is_given) in [("0 deg", false), ("10 deg", true)] {
+        let page = page(tilt);
+        // but for the closed form of the parameter
+        let is_part = |line: &str| line.starts_with("  t1 = ") && !line.starts_with("  t1 = -(");
+        assert!(!page.lines().any(is_part) && page.contains("  t3 = "), "{page}");
+        assert_eq!(page.contains("it is linear in t2, which it gives in closed form"), is_given, "{page}");
+        assert!(page.contains("it is linear in t1, which it gives in closed form"), "{page}");
+    }
+}

@@ -574,7 +574,7 @@ fn job_name(text: &str) -> Result<String, String> {
     let is_word = text.chars().all(|letter| letter.is_ascii_alphanumeric() || letter == '_');
     let is_name = is_word && text.starts_with(|letter: char| letter.is_ascii_alphabetic());
     if !is_name {
-        return Err("a name has letters, digits and _, a letter first".to_owned());
+        return Err("a file is called so, too: letters from a to z, digits and _, a letter first".to_owned());
     }
     if flank::is_reserved(text) {
         return Err("this is a word of the language and cannot be a name".to_owned());

@@ -106,10 +106,10 @@ fn draw(arguments: &Test, spec: &TestedSpec) -> Result<(), Failure> {
 /// A line for each failure as forges read it.
 fn annotate(spec: &TestedSpec) {
     let line = |at: &str, message: &str| {
-        let message = message.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A");
-        print(&format!("::error {at}::{message}\n"));
+        print(&format!("::error {at}::{}\n", escaped(message)));
     };
-    let file = |file: &str| format!("file={}", file.replace(['\n', '\r', ','], " "));
+    // in a property a comma would end it, and a colon the command
+    let file = |file: &str| format!("file={}", escaped(file).replace(':', "%3A").replace(',', "%2C"));
     for expectation in spec.items.iter().flat_map(|item| &item.expectations).filter(|expectation| !expectation.holds) {
         let place = &expectation.place;
         let at = format!("{},line={},col={}", file(&place.file), place.line, place.column);
@@ -124,6 +124,11 @@ fn annotate(spec: &TestedSpec) {
     spec.failure.iter().for_each(|why| line(&file(&spec.file), why));
     let differs = spec.snapshot.iter().filter(|snapshot| snapshot.differs());
     differs.for_each(|snapshot| line(&file(&snapshot.file), &snapshot.differences.join("; ")));
+}
+
+/// On one line, as forges read it.
+fn escaped(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
 }
 
 /// Writes all snapshots that differ.

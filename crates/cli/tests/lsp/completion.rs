@@ -186,6 +186,44 @@ fn what_is_proposed_makes_a_right_text() {
     assert!(tried > 60 && right as f64 / tried as f64 > 0.7, "{right} of {tried}\n{}", told.join("\n"));
 }
 
+/// What is proposed at a mark in the text of the job.
+fn proposed(written: &str, marked: &str) -> Vec<String> {
+    let changed = format!("{MACHINE}{JOB}").replacen(written, marked, 1);
+    let (before, behind) = changed.split_once('|').unwrap_or_else(|| panic!("no {written}"));
+    let found = analysed(Path::new("/thread.chain"), &format!("{before}{behind}")).completions(before.len());
+    found.into_iter().map(|one| one.label).collect()
+}
+
+/// Curvatures are known where points are tested, axes and other motions nowhere; corners are entries, and no values.
+#[test]
+fn of_points_what_they_have_is_proposed() {
+    let other = "motion feed : length in 0 mm .. 1 mm\n    sample groove";
+    let in_sample = |entry: &str| proposed("sample groove {", &format!("{other} {{ {entry}"));
+    let has = |found: &[String], wanted: &[&str], unwanted: &[&str]| {
+        assert!(wanted.iter().all(|one| found.iter().any(|of| of == one)), "{found:?} lacks some of {wanted:?}");
+        assert!(!found.iter().any(|of| unwanted.contains(&of.as_str())), "{found:?} has some of {unwanted:?}");
+    };
+    let never = ["k1", "k2", "gaussian_curvature", "mean_curvature", "feed", "X"];
+    has(&in_sample("|, "), &["rho", "toe_root", "lengthwise", "u", "turn"], &never);
+    has(&in_sample("deep = |: 0 mm, "), &["rho", "u", "turn", "lead"], &[&never[..], &["toe_root"]].concat());
+    has(&in_sample("deep = m.|: 0 mm, "), &["depth"], &never);
+    let expected = |what: &str| {
+        let all = format!("motion feed : length in 0 mm .. 1 mm\n    expect {what}\n    sample groove");
+        proposed("sample groove", &all)
+    };
+    let never = ["gaussian_curvature", "mean_curvature", "feed", "X"];
+    has(&expected("groove: |"), &["rho", "k1", "induced_k1", "u", "turn"], &never);
+    has(&expected("groove: m.|"), &["depth"], &never);
+}
+
+/// A variant of a job changes settings of its machines and tools.
+#[test]
+fn settings_of_a_part_are_proposed_behind_its_dot() {
+    let whole = format!("{MACHINE}{JOB}job other_thread = thread(lead: 3 mm/rev, m.");
+    let found = analysed(Path::new("/thread.chain"), &format!("{whole})\n")).completions(whole.len());
+    assert_eq!(found.iter().map(|one| one.text.as_str()).collect::<Vec<_>>(), ["depth: "]);
+}
+
 /// The blocks that are offered to an editor: their formats and texts.
 fn blocks(client: &mut Client) -> Vec<(u64, String)> {
     client.open("file:///nowhere/empty.chain", "");

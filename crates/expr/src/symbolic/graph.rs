@@ -104,7 +104,7 @@ impl Node {
 pub(super) struct Store {
     pub(super) nodes: Vec<Node>,
     index: NodeMap<Node, NodeId>,
-    variables: Vec<String>,
+    pub(super) variables: Vec<String>,
     curves: Vec<Arc<Curve>>,
     pub(super) implicits: Vec<Arc<Implicit>>,
     pub(super) integrals: Vec<Arc<Integral>>,

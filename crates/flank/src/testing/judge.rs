@@ -1,6 +1,8 @@
 //! Whether expectations hold.
 
-use flank_chain_dsl::{Dimension, Expected, Job, PointColumn, PoseDifference, PoseTolerance, Quantity, Sample};
+use flank_chain_dsl::{
+    Dimension, Expected, Job, PointColumn, PoseDifference, PoseTolerance, Process, Quantity, Sample,
+};
 use flank_export::Values;
 use flank_expr::{Expr, ScalarEvaluator, Tape};
 use flank_solver::{Outcome, SurfacePoint};
@@ -188,7 +190,13 @@ fn worst(
     let farthest = known.clone().reduce(|a, b| if excess(b.1) > excess(a.1) { b } else { a });
     let Some((at, value)) = farthest else {
         let details = unknown.iter().take(NAMED).map(|k| told(points, sample, *k)).collect();
-        return Verdict { holds: false, found: format!("no point of {name} is solved"), details };
+        let is_solved = points.iter().any(|point| point.outcome == Outcome::Solved);
+        let found = if is_solved {
+            format!("no point of {name} has this value")
+        } else {
+            format!("no point of {name} is solved")
+        };
+        return Verdict { holds: false, found, details };
     };
     let wrong = known.filter(|(_, value)| excess(*value) > 0.0).count();
     let what = if is_difference { "off by up to" } else { "reaches" };
@@ -223,7 +231,14 @@ fn at_points<'g>(
     let points = tested.points(index);
     let values = values(tested, index, (sample, points), (value, known));
     let mut verdict = worst((sample, points), &values, (&surface.name, dimension), wanted);
-    if !verdict.holds {
+    let is_induced = known.iter().any(|(name, variable)| {
+        let id = variable.as_variable();
+        name.starts_with("induced_") && id.is_some_and(|id| value.graph().variables_of(&[value]).contains(&id))
+    });
+    if is_induced && surface.generation.process != Process::Envelope {
+        let of_tool = "induced curvatures are of an envelope and the tool that touches it: this surface is none";
+        verdict.details = vec![of_tool.to_string()];
+    } else if !verdict.holds {
         verdict.details.extend(tested.hints(index));
     }
     verdict
@@ -336,6 +351,12 @@ fn of_surface(known: &Known<'_, '_, '_>, index: usize, (other, within): (&str, f
     let name = pair[1].whole_name();
     let mut verdict = worst((sample, &map.points), &deviations, (&name, Dimension::LENGTH), Wanted::within(within));
     verdict.details.extend(map.refused.iter().map(|why| why.message.clone()));
+    if !verdict.holds && pair[0].surface.frame != pair[1].surface.frame {
+        let [one, other] = pair.map(|of| format!("{} in {}", of.whole_name(), of.surface.frame));
+        verdict
+            .details
+            .push(format!("they lie in different frames, {one} and {other}, and are compared in coordinates of these"));
+    }
     Ok(verdict)
 }
 

@@ -28,6 +28,10 @@ impl TestedSpec {
         !self.items.is_empty() || self.failed() > 0
     }
 
+    fn is_as_in_snapshot(&self) -> bool {
+        self.snapshot.as_ref().is_some_and(|snapshot| snapshot.is_same)
+    }
+
     /// How many warnings there are, behind what else is said of it.
     fn warned(&self) -> String {
         match self.findings.counts()[1] {
@@ -49,8 +53,13 @@ impl Display for TestedSpec {
             _ if self.is_wrong() => {
                 writeln!(f, "{}: {} in the text", self.file, units::counted(self.findings.counts()[0], "error"))?
             }
+            (0, 0) if self.is_as_in_snapshot() => writeln!(f, "{}: as in its snapshot{}", self.file, self.warned())?,
             (0, 0) => writeln!(f, "{}: nothing is expected{}", self.file, self.warned())?,
-            (_, 0) => writeln!(f, "{}: {all} hold{}{}", self.file, if passed == 1 { "s" } else { "" }, self.warned())?,
+            (_, 0) => {
+                let hold = if passed == 1 { "holds" } else { "hold" };
+                let compared = if self.is_as_in_snapshot() { ", as in its snapshot" } else { "" };
+                writeln!(f, "{}: {all} {hold}{compared}{}", self.file, self.warned())?
+            }
             _ => writeln!(f, "{}: {failed} of {all} failed{}", self.file, self.warned())?,
         }
         if let Some(why) = &self.failure {

@@ -6,7 +6,7 @@ use crate::diagnostics::source::Name;
 use crate::syntax::ast::{Call, Dimension, Expression, ExpressionKind, Path, Range};
 
 /// What every point has, and what samples and milling passes run by.
-pub(crate) const OF_POINTS: [&str; 19] = [
+const OF_POINTS: [&str; 19] = [
     "x",
     "y",
     "z",
@@ -29,7 +29,7 @@ pub(crate) const OF_POINTS: [&str; 19] = [
 ];
 
 /// What a flank of a blank is asked for by.
-pub(super) const OUTLINE: [&str; 6] = ["toe_root", "heel_root", "toe_tip", "heel_tip", "lengthwise", "profilewise"];
+pub(crate) const OUTLINE: [&str; 6] = ["toe_root", "heel_root", "toe_tip", "heel_tip", "lengthwise", "profilewise"];
 
 /// Of these, what stands for a point's own before anything of that name in the job: its coordinates, and where it is known its curvatures.
 const FIRST: [&str; 8] = ["x", "y", "z", "rho", "polar_angle", "nx", "ny", "nz"];

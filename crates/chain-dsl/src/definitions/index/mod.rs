@@ -15,7 +15,7 @@ use crate::diagnostics::source::{FileId, Span};
 use crate::syntax::ast;
 use crate::values::dimension::Dimension;
 
-pub(crate) use expression::{OF_POINTS, functions};
+pub(crate) use expression::{OUTLINE, functions};
 use members::Names;
 
 /// Index of a [`Symbol`] in [`Index::symbols`].

@@ -14,7 +14,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::source::{Name, Span};
 use crate::job::sample;
-use crate::model::RangedVariable;
+use crate::model::{GeneratedSurface, RangedVariable};
 use crate::syntax::ast::{self, ExpressionKind, JobStatement};
 use crate::values::context::{Context, Role, suggesting_word};
 use crate::values::dimension::{Dimension, shown};
@@ -33,6 +33,9 @@ pub(crate) const STATUSES: [&str; 8] =
 
 /// What stands for all sampled surfaces.
 const ALL: &str = "all";
+
+/// The target of an expectation, in reports.
+const COMPARED: &str = "what the value is compared with";
 
 /// Why expectations never fail.
 const SAME: &str = "both sides are the same";
@@ -264,22 +267,45 @@ impl<'g> Builder<'_, 'g> {
         if let Some(surface) = surface {
             let surface = self.sampled_surface(context, surface, job)?;
             let (scope, known) = self.scope_at_points(context, surface, value.span)?;
-            let (value, dimension) = scalar(context, value, &scope)?;
+            let (value, dimension) = self.scalar_at_points(context, surface, value, &scope)?;
             let (low, high) = context.range(range, &self.scope, dimension, "what is expected")?;
             let ends = [low, high];
             return Some(Expected::AtPoints { surface, value, known, dimension, ends, is_difference: false });
         }
         let mut named = Named { scope: self.scope.clone(), list: Vec::new() };
+        let places = [value.span, range.low.span, range.high.span];
         let [value, low, high] =
             [value, &range.low, &range.high].map(|part| self.with_quantities(context, part, job, &mut named));
         let (value, dimension) = scalar(context, &value, &named.scope)?;
         let low = context.scalar(&low, &named.scope, dimension, "the lower end")?;
         let high = context.scalar(&high, &named.scope, dimension, "the upper end")?;
+        self.known_once(context, [value, low, high].into_iter().zip(places))?;
         if let Some((low, high)) = low.as_constant().zip(high.as_constant()).filter(|(low, high)| low > high) {
             context.report_empty(range, [low, high], dimension, "what is expected");
             return None;
         }
         self.value(context, (value, [low, high]), dimension, named, span)
+    }
+
+    /// Reports parts of an expectation of the whole job in which something moves: they have no one value.
+    fn known_once(&self, context: &mut Context<'g>, parts: impl IntoIterator<Item = (Expr<'g>, Span)>) -> Option<()> {
+        for (part, span) in parts {
+            let moves = |variable: &Expr<'g>| {
+                context.role(*variable).is_some_and(|role| !role.stands_still() && role != Role::Quantity)
+            };
+            let Some(moving) = context.variables_of(&[part]).into_iter().find(moves) else { continue };
+            let role = context.role(moving).map_or("variable", Role::described);
+            let message = format!("what is expected must stand still, but depends on the {role} `{moving}`");
+            let mut diagnostic = Diagnostic::new(Code::NotConstant, span, message);
+            let has_it = |surface: &GeneratedSurface<'g>| surface.surface.unknowns.contains(&moving);
+            if let Some((surface, _)) = self.surfaces.iter().find(|(surface, _)| has_it(surface)) {
+                diagnostic =
+                    diagnostic.help(format!("of points it is told with their surface: `expect {}: …`", surface.name));
+            }
+            context.report(diagnostic);
+            return None;
+        }
+        Some(())
     }
 
     fn value(
@@ -315,8 +341,10 @@ impl<'g> Builder<'_, 'g> {
         if let Some(surface) = surface {
             let surface = self.sampled_surface(context, surface, job)?;
             let (scope, known) = self.scope_at_points(context, surface, span)?;
-            let (value, dimension) = scalar(context, value, &scope)?;
-            let target = context.scalar(target, &scope, dimension, "what the value is compared with")?;
+            let (value, dimension) = self.scalar_at_points(context, surface, value, &scope)?;
+            let place = target.span;
+            let target = context.scalar(target, &scope, dimension, COMPARED)?;
+            self.follows_from_points(context, surface, (target, place), COMPARED)?;
             let within = self.tolerance(context, within, dimension)?;
             let (value, ends) = (value - target, [-within, within]);
             if value.as_constant() == Some(0.0) {
@@ -328,9 +356,11 @@ impl<'g> Builder<'_, 'g> {
             return self.surface_near(context, (surface, target, within), span, job);
         }
         let mut named = Named { scope: self.scope.clone(), list: Vec::new() };
+        let places = [value.span, target.span];
         let [value, target] = [value, target].map(|part| self.with_quantities(context, part, job, &mut named));
         let (value, dimension) = scalar(context, &value, &named.scope)?;
-        let target = context.scalar(&target, &named.scope, dimension, "what the value is compared with")?;
+        let target = context.scalar(&target, &named.scope, dimension, COMPARED)?;
+        self.known_once(context, [value, target].into_iter().zip(places))?;
         let within = self.tolerance(context, within, dimension)?;
         if value.as_constant().is_none() && (value - target).as_constant() == Some(0.0) {
             never_fails(context, span, SAME);
@@ -375,6 +405,9 @@ impl<'g> Builder<'_, 'g> {
                 let surface = self.sampled_surface(context, path, job)?;
                 let (scope, known) = self.scope_at_points(context, surface, span)?;
                 let wanted: [Expr<'g>; 3] = context.vector(target, &scope, Dimension::LENGTH, "a position")?;
+                for part in wanted {
+                    self.follows_from_points(context, surface, (part, target.span), COMPARED)?;
+                }
                 let within = self.tolerance(context, within, Dimension::LENGTH)?;
                 let position = self.surfaces[surface].0.surface.position.0;
                 let apart = [0, 1, 2].map(|k| position[k] - wanted[k]);
@@ -411,7 +444,29 @@ impl<'g> Builder<'_, 'g> {
         written: &ast::Expression,
     ) -> Option<(Expr<'g>, Dimension)> {
         let scope = sample::scope_at_points(context, &self.surfaces[surface].0, &self.scope, written.span)?;
-        scalar(context, written, &scope)
+        self.scalar_at_points(context, surface, written, &scope)
+    }
+
+    fn scalar_at_points(
+        &self,
+        context: &mut Context<'g>,
+        surface: usize,
+        written: &ast::Expression,
+        scope: &Scope<'g>,
+    ) -> Option<(Expr<'g>, Dimension)> {
+        let (value, dimension) = scalar(context, written, scope)?;
+        self.follows_from_points(context, surface, (value, written.span), "what is expected")?;
+        Some((value, dimension))
+    }
+
+    fn follows_from_points(
+        &self,
+        context: &mut Context<'g>,
+        surface: usize,
+        value: (Expr<'g>, Span),
+        what: &str,
+    ) -> Option<()> {
+        sample::follows_from_points(context, value, &self.surfaces[surface].0, what)
     }
 }
 

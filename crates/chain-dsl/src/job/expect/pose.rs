@@ -38,6 +38,15 @@ impl Pose<'_> {
         (definitions, plain): (&Definitions<'_>, &Job<'g>),
     ) -> Option<Expected<'g>> {
         let within = tolerance(context, self.within)?;
+        for (k, argument) in self.at.iter().enumerate() {
+            let Some(name) = &argument.name else { continue };
+            let mut earlier = self.at[..k].iter().filter_map(|earlier| earlier.name.as_ref());
+            if let Some(first) = earlier.find(|first| first.node == name.node) {
+                let twice = format!("`{}` is given twice", name.node);
+                context.report(Diagnostic::new(Code::DuplicateName, name.span, twice).note(first.span, "first here"));
+                return None;
+            }
+        }
         let plain_machine = plain.machines.first()?;
         let is_axis = |name: &Name| plain_machine.axes.iter().any(|axis| axis.name == name.node);
         let own = |argument: &&Argument| argument.name.as_ref().is_some_and(is_axis);

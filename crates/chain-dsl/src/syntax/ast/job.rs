@@ -371,7 +371,7 @@ pub struct Sampled {
 impl Sampled {
     fn about(&self) -> (Subject, String) {
         match &self.name {
-            Some(name) => (Subject::Name, name.node.clone()),
+            Some(name) => (Subject::Sample, name.node.clone()),
             None => (Subject::Sampled, self.surface.joined()),
         }
     }
@@ -388,6 +388,8 @@ pub(crate) enum Subject {
     Axis,
     /// What it asks for points of.
     Sampled,
+    /// The name of a sample beside that of its surface: it takes the place of no value, surface or machine of that name.
+    Sample,
 }
 
 /// `key: a .. b by n`, `key: [a, b]`, or `key: value`

@@ -195,6 +195,16 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
     let place = scan.place(index);
     let diagnostic = Diagnostic::new(Code::Syntax, place, message);
     let sign = scan.say(index);
+    if let Some(closing) = absolute(scan, index) {
+        let whole = scan.extent(index..closing + 1);
+        let inside = scan.extent(index + 1..closing);
+        let text = format!("abs({})", &scan.text[inside.start as usize..inside.end as usize]);
+        return Some(diagnostic.help("an absolute value is written `abs(x)`").cure(
+            format!("write `{text}`"),
+            whole,
+            text,
+        ));
+    }
     if let Some(text) = written_here(sign) {
         let is_twice = matches!(sign, "&" | "|") && scan.say(index + 1) == sign;
         let whole = scan.extent(index..index + if is_twice { 2 } else { 1 });
@@ -225,6 +235,15 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
             None => diagnostic,
         },
     })
+}
+
+/// The `|` that closes an absolute value which opens at a token: where a value begins, and on the same line.
+fn absolute(scan: &Scan, open: usize) -> Option<usize> {
+    let before = open.checked_sub(1)?;
+    let begins_value = scan.kind(before) == Some(Kind::Sign) && !matches!(scan.say(before), ")" | "]" | "}");
+    let mut line = (open + 1..scan.tokens.len()).take_while(|index| scan.indent(*index).is_none());
+    let closing = line.find(|index| scan.say(*index) == "|")?;
+    (scan.say(open) == "|" && begins_value && closing > open + 1).then_some(closing)
 }
 
 /// A text between other signs that opens at a place, and how it is written here.

@@ -93,7 +93,7 @@ impl<'s> Recover<'s> {
 
     /// Whether a word that begins a statement of the block is followed by nothing that it could introduce, nor is it a name.
     fn lacks_what_follows(&self, block: &Block) -> bool {
-        block.words().contains(&self.say()) && !matches!(self.scan.say(self.at + 1), "=" | ":")
+        block.words().contains(&self.say()) && self.scan.say(self.at + 1) != "="
     }
 
     fn begins_item(&self, block: &Block) -> bool {

@@ -47,7 +47,7 @@ impl Graph {
     pub fn listing(&self, roots: &[Expr<'_>], style: Style, prefix: &str) -> Listing {
         let order = self.reachable_by(Way::Words, roots.iter().map(|root| root.id), |_| true);
         let named: Vec<(NodeId, String)> =
-            self.worth_naming(&order, roots).into_iter().zip(self.free_names(&order, style, prefix)).collect();
+            self.worth_naming(&order, roots).into_iter().zip(self.free_names(style, prefix)).collect();
         let writer = Writer::new(self, style, &order, named.iter().cloned().collect());
         Listing {
             definitions: named
@@ -87,15 +87,12 @@ impl Graph {
         worth
     }
 
-    /// Names as they are written, without those that a variable has.
-    fn free_names(&self, order: &[NodeId], style: Style, prefix: &str) -> impl Iterator<Item = String> {
-        let taken: HashSet<String> = order
-            .iter()
-            .filter_map(|&id| match self.node(id) {
-                Node::Variable(variable) => Some(name::variable(&self.variable_name(variable), style)),
-                _ => None,
-            })
-            .collect();
+    /// Names as they are written, without those that a variable has: any of the graph, as pages show several expressions of it.
+    fn free_names(&self, style: Style, prefix: &str) -> impl Iterator<Item = String> {
+        let store = self.store.borrow();
+        // none but those that begin alike can be one of these
+        let alike = store.variables.iter().filter(|name| name.starts_with(prefix));
+        let taken: HashSet<String> = alike.map(|variable| name::variable(variable, style)).collect();
         (1..)
             .map(move |number: u32| name::variable(&format!("{prefix}{number}"), style))
             .filter(move |name| !taken.contains(name))

@@ -1,6 +1,6 @@
-//! Angles by which a flank turned, from how far its points moved along their normals.
+//! Angles by which a flank turned: the difference of those that both surfaces have at one place.
 
-use nalgebra::Vector3;
+use flank_solver::{Outcome, SurfacePoint};
 
 use crate::testing::judge::significant;
 use crate::testing::snapshot::text::{Kept, KeptSurface};
@@ -10,38 +10,106 @@ const LEAST: f64 = 5e-4;
 /// How much the normals of a cylindrical gear's flank differ along its lines on cylinders, where modifications turn them: 1.1 deg. Those of
 /// a face gear, whose profiles these lines are, differ by its pressure angles.
 const MODIFIED: f64 = 0.02;
+/// Of the component of a normal around the axis: a surface that faces the axis or an end of the gear is no flank.
+const FACING: f64 = 0.1;
 
-/// Pressure angle along the profile, helix or spiral angle along the tooth, of slopes from the first row to the last and from the first column
-/// to the last, mm. The labels are the sample's: others than these have no angle.
+/// Pressure angle, and helix or spiral angle, at the kept point in the middle of the sample. The labels are the sample's: others than these have
+/// no angle.
 ///
-/// A change of the pressure angle alone leaves lines along the teeth where they are, so that a slope is held against the way across these lines.
+/// Angles of one place are those of its normal, seen from the axis: neither a flank that turns about its axis nor points that slide along it
+/// change them.
 ///
 /// Where a sample goes by radius and height, nothing but the points says which of them runs along the teeth: along the axis on a helicoid, as
 /// the flanks of spur and helical gears and of worms are. Others have no angle, such as those of a face gear, whose teeth run along the radius.
-pub(super) fn turned(surface: &KeptSurface, labels: &[String; 2], slopes: [f64; 2]) -> String {
-    let [rows, columns] = surface.counts;
-    let middles: [Vec<&Kept>; 2] = [
-        (0..rows).map(|row| &surface.points[row * columns + columns / 2]).collect(),
-        (0..columns).map(|column| &surface.points[rows / 2 * columns + column]).collect(),
-    ];
+pub(super) fn turned(surface: &KeptSurface, now: &[SurfacePoint], labels: &[String; 2]) -> String {
     let by_radius = labels.iter().position(|label| label == "rho");
     let is_helicoid = by_radius.is_some_and(|k| is_helicoid(surface, k));
+    let is_solved = |at: &usize| surface.points[*at].is_solved() && now[*at].outcome == Outcome::Solved;
+    let Some(at) = nearest_to_middle(surface, is_solved) else { return String::new() };
+    let blank = if is_helicoid { Some(Blank::CYLINDER) } else { Blank::between(surface, at) };
+    let Some(blank) = blank else { return String::new() };
+    let (old, new) = (&surface.points[at], &now[at]);
+    let [old, new] = [(&old.position, &old.normal), (&new.position, &new.normal)].map(|of| seen_from_axis(of.0, of.1));
+    if [old, new].iter().any(|[_, around, _]| around.abs() < FACING) {
+        return String::new();
+    }
     let mut out = String::new();
-    for k in 0..2 {
-        let [along, other] = [&middles[k], &middles[1 - k]];
-        let (what, length) = match labels[k].as_str() {
-            "rho" if is_helicoid => ("pressure angle", way(along, radius, across_cylinders)),
-            "root -> tip" => ("pressure angle", (chord(along) - project(chord(along), chord(other))).norm()),
-            "z" if is_helicoid => ("helix angle", way(along, height, on_cylinder)),
-            "toe -> heel" => ("spiral angle", chord(along).norm()),
+    for label in labels {
+        let (what, [before, after]) = match label.as_str() {
+            "rho" if is_helicoid => ("pressure angle", [old, new].map(Blank::transverse_pressure_angle)),
+            "root -> tip" => ("pressure angle", [old, new].map(|normal| blank.normal_pressure_angle(normal))),
+            "z" if is_helicoid => ("helix angle", [old, new].map(|normal| blank.spiral_angle(normal))),
+            "toe -> heel" => ("spiral angle", [old, new].map(|normal| blank.spiral_angle(normal))),
             _ => continue,
         };
-        let arcmin = slopes[k].atan2(length).to_degrees() * 60.0;
+        // a pressure angle is positive, on whichever side of the surface the steel lies
+        let sign = if what == "pressure angle" { before.signum() } else { 1.0 };
+        let arcmin = sign * (after - before).to_degrees() * 60.0;
         if arcmin.is_finite() && arcmin.abs() >= LEAST {
             out += &format!(", {what} {}{} arcmin", if arcmin > 0.0 { "+" } else { "" }, significant(arcmin));
         }
     }
     out
+}
+
+/// The number of the point in the middle row and column, or of the nearest to it that is so.
+fn nearest_to_middle(surface: &KeptSurface, is_one: impl Fn(&usize) -> bool) -> Option<usize> {
+    let [rows, columns] = surface.counts;
+    let off = |at: &usize| (at / columns).abs_diff(rows / 2) + (at % columns).abs_diff(columns / 2);
+    (0..surface.points.len()).filter(is_one).min_by_key(off)
+}
+
+/// The normal at a point, by its components along the radius, around the axis and along it.
+fn seen_from_axis([x, y, _]: &[f64; 3], [nx, ny, nz]: &[f64; 3]) -> [f64; 3] {
+    let radius = x.hypot(*y);
+    [(x * nx + y * ny) / radius, (x * ny - y * nx) / radius, *nz]
+}
+
+/// How a tooth lies in the section of its blank through the axis: unit vectors along the tooth and across it towards its tip, by radius and height.
+#[derive(Clone, Copy)]
+struct Blank {
+    along: [f64; 2],
+    across: [f64; 2],
+}
+
+impl Blank {
+    const CYLINDER: Blank = Blank { along: [0.0, 1.0], across: [1.0, 0.0] };
+
+    /// Of a sample whose rows lie from root to tip and its columns from toe to heel, along the row of a point.
+    fn between(surface: &KeptSurface, at: usize) -> Option<Blank> {
+        let [rows, columns] = surface.counts;
+        let place = |row: usize, column: usize| {
+            let point = Some(&surface.points[row * columns + column]).filter(|point| point.is_solved())?;
+            Some([point.position[0].hypot(point.position[1]), point.position[2]])
+        };
+        let (row, column) = (at / columns, at % columns);
+        let way = |from: Option<[f64; 2]>, to: Option<[f64; 2]>| {
+            let ([r0, z0], [r1, z1]) = (from?, to?);
+            let length = (r1 - r0).hypot(z1 - z0);
+            (length > 0.0).then(|| [(r1 - r0) / length, (z1 - z0) / length])
+        };
+        let [radial, axial] = way(place(row, 0), place(row, columns - 1))?;
+        let depth = way(place(0, column), place(rows - 1, column))?;
+        let is_to_tip = depth[0] * axial - depth[1] * radial > 0.0;
+        let across = if is_to_tip { [axial, -radial] } else { [-axial, radial] };
+        Some(Blank { along: [radial, axial], across })
+    }
+
+    /// Of the trace of the flank on the cone along the tooth against the plane through the axis: positive right-hand.
+    fn spiral_angle(self, [radial, around, axial]: [f64; 3]) -> f64 {
+        let along = self.along[0] * radial + self.along[1] * axial;
+        (-self.along[1].signum() * along / around).atan()
+    }
+
+    /// Of the profile in the plane across the axis against the radius.
+    fn transverse_pressure_angle([radial, around, _]: [f64; 3]) -> f64 {
+        (radial / around.abs()).atan()
+    }
+
+    /// Of the profile in the plane across the trace.
+    fn normal_pressure_angle(self, [radial, _, axial]: [f64; 3]) -> f64 {
+        (self.across[0] * radial + self.across[1] * axial).asin()
+    }
 }
 
 /// Whether the normals along each line at one radius are the same, seen from the axis. `by_radius` is 0 where rows are at one radius, 1 where columns are.
@@ -53,10 +121,7 @@ fn is_helicoid(surface: &KeptSurface, by_radius: usize) -> bool {
             0 => (0..columns).map(|column| k * columns + column).collect(),
             _ => (0..rows).map(|row| row * columns + k).collect(),
         };
-        let seen = |point: &Kept| {
-            let [radial, around] = normal_there(point);
-            [radial, around, point.normal[2]]
-        };
+        let seen = |point: &Kept| seen_from_axis(&point.position, &point.normal);
         on_line.into_iter().filter_map(solved).map(seen).collect()
     };
     (0..surface.counts[by_radius]).map(line).all(|normals| {
@@ -67,48 +132,4 @@ fn is_helicoid(surface: &KeptSurface, by_radius: usize) -> bool {
         };
         (0..3).all(|k| differ(k) <= MODIFIED || normals.is_empty())
     })
-}
-
-fn chord(points: &[&Kept]) -> Vector3<f64> {
-    let at = |point: Option<&&Kept>| point.map_or(Vector3::zeros(), |point| Vector3::from(point.position));
-    at(points.last()) - at(points.first())
-}
-
-fn project(one: Vector3<f64>, on: Vector3<f64>) -> Vector3<f64> {
-    on * (one.dot(&on) / on.norm_squared())
-}
-
-/// The length of a way through points on a surface, by its length for a unit of a coordinate.
-fn way(points: &[&Kept], coordinate: fn(&Kept) -> f64, rate: fn(&Kept) -> f64) -> f64 {
-    let pieces = points.windows(2).map(|two| {
-        let [one, next] = [two[0], two[1]];
-        (coordinate(next) - coordinate(one)).abs() * (rate(one) + rate(next)) / 2.0
-    });
-    pieces.sum()
-}
-
-fn radius(point: &Kept) -> f64 {
-    point.position[0].hypot(point.position[1])
-}
-
-fn height(point: &Kept) -> f64 {
-    point.position[2]
-}
-
-/// Components of the normal along the radius and around the axis.
-fn normal_there(point: &Kept) -> [f64; 2] {
-    let ([x, y, _], [nx, ny, _]) = (point.position, point.normal);
-    [x * nx + y * ny, x * ny - y * nx].map(|component| component / radius(point))
-}
-
-/// The way on the surface across its lines on cylinders, for a unit of the radius.
-fn across_cylinders(point: &Kept) -> f64 {
-    let [radial, _] = normal_there(point);
-    1.0 / (1.0 - radial * radial).sqrt()
-}
-
-/// The way along the surface's line on a cylinder, for a unit along the axis, by the part of a motion in the cylinder that is along the normal.
-fn on_cylinder(point: &Kept) -> f64 {
-    let [radial, around] = normal_there(point);
-    (1.0 - radial * radial) / around.abs()
 }

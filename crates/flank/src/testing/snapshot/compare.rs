@@ -3,7 +3,8 @@
 use flank_chain_dsl::Sample;
 use flank_draw::{PictureOptions, field_maps};
 use flank_export::{Axis, Dataset, Field, Header, Patch, Values};
-use flank_solver::{EaseOff, Outcome, SurfacePoint};
+use flank_solver::{Outcome, SurfacePoint};
+use nalgebra::Vector3;
 
 use crate::project::Project;
 use crate::project::failure::Failure;
@@ -98,14 +99,26 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         Beside { tested, index, old, now }
     }
 
-    /// How far each point moved along its old normal, mm.
-    fn displacements(&self) -> Vec<Option<f64>> {
+    /// How far each point is from where it was, along what the surface's normals there were and are together, and along the surface, mm.
+    ///
+    /// Of a point that slides along a curved surface the chord leaves the tangent plane; of the sum of both normals it does not, to second
+    /// order, so that what slides does not move.
+    fn ways(&self) -> Vec<Option<[f64; 2]>> {
         let Some((_, points)) = &self.now else { return Vec::new() };
-        let along = self.old.points.iter().zip(points).map(|(old, new)| {
-            (old.is_solved() && new.outcome == Outcome::Solved)
-                .then(|| (0..3).map(|k| (new.position[k] - old.position[k]) * old.normal[k]).sum())
+        let ways = self.old.points.iter().zip(points).map(|(old, new)| {
+            (old.is_solved() && new.outcome == Outcome::Solved).then(|| {
+                let way = Vector3::from(new.position) - Vector3::from(old.position);
+                let both = Vector3::from(old.normal) + Vector3::from(new.normal);
+                let along = 0.5 * both.dot(&way);
+                [along, (way.norm_squared() - along * along).max(0.0).sqrt()]
+            })
         });
-        along.collect()
+        ways.collect()
+    }
+
+    /// How far each point moved along its normal, mm.
+    fn displacements(&self) -> Vec<Option<f64>> {
+        self.ways().into_iter().map(|way| way.map(|[along, _]| along)).collect()
     }
 
     /// What moved by more than the digits of a snapshot show.
@@ -133,8 +146,10 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
                 precise(flank_chain_dsl::Dimension::LENGTH, most),
                 place(sample, k),
                 precise(flank_chain_dsl::Dimension::LENGTH, rms),
-                self.angles(&by)
+                self.angles(points)
             ));
+        } else if let Some(slid) = self.slid(sample) {
+            lines.push(format!("{name} is the same surface, along which {slid}"));
         }
         lines.extend(self.other_statuses(&name, new));
         lines.extend(self.other_branch(&name, points));
@@ -202,15 +217,21 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         }
     }
 
-    /// Slopes of what moved, as angles.
-    fn angles(&self, by: &[Option<f64>]) -> String {
-        let lines = lines(self.old);
-        let Some(of) = EaseOff::over_lines(by, lines.each_ref().map(Vec::as_slice)) else { return String::new() };
+    /// How far points slid along a surface that did not move.
+    fn slid(&self, sample: &Sample<'_>) -> Option<String> {
+        let along = self.ways().into_iter().enumerate().filter_map(|(k, way)| Some((k, way?[1])));
+        let (k, most) = along.reduce(|a, b| if b.1 > a.1 { b } else { a }).filter(|(_, most)| *most > DIGITS)?;
+        let most = precise(flank_chain_dsl::Dimension::LENGTH, most);
+        Some(format!("points slid by at most {most} at {}", place(sample, k)))
+    }
+
+    /// By which angles of gears it turned.
+    fn angles(&self, points: &[SurfacePoint]) -> String {
         // labels are not kept: those of today hold for the same coordinates
         let is_same =
             |sample: &&Sample<'_>| sample.coordinates.each_ref().map(|of| &of.name) == self.old.coordinates.each_ref();
         let sample = self.tested.surface(self.index).sample.as_ref().filter(is_same);
-        sample.map_or(String::new(), |sample| turned(self.old, &sample.labels, of.slopes))
+        sample.map_or(String::new(), |sample| turned(self.old, points, &sample.labels))
     }
 
     /// Whether unknowns are elsewhere at points that are the same.
@@ -261,18 +282,6 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
                 .svg(),
         )
     }
-}
-
-/// How far the rows and the columns of a snapshot are from its first ones, in what its points were asked for by, along the lines in their middle.
-fn lines(of: &KeptSurface) -> [Vec<f64>; 2] {
-    let [rows, columns] = of.counts;
-    let at = |row: usize, column: usize| of.points[row * columns + column].at;
-    let apart = |[a, b]: [f64; 2], [c, d]: [f64; 2]| (c - a).hypot(d - b);
-    let (row, column) = (rows / 2, columns / 2);
-    [
-        (0..rows).map(|k| apart(at(0, column), at(k, column))).collect(),
-        (0..columns).map(|k| apart(at(row, 0), at(row, k))).collect(),
-    ]
 }
 
 /// An unknown that is farther away than this share of its range is another solution.

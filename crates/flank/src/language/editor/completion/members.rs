@@ -15,6 +15,18 @@ impl Analysis {
     pub(super) fn members_at(&self, cursor: &Cursor<'_>, around: &Around, list: &mut List<'_>) {
         let path = path_before(cursor);
         let Some((first, rest)) = path.split_first() else { return };
+        // `job plain = crowned(m.…`: of the job that is changed
+        let called = cursor.call().and_then(|call| self.definition_named(around, call.name));
+        let changed = called.filter(|id| self.kind(*id) == NameKind::Job);
+        if changed.is_some() && rest.is_empty() {
+            let settings = self.named(changed, first).map(|of| self.members_of(of)).unwrap_or_default();
+            let is_setting = |id: &SymbolId| matches!(self.kind(*id), NameKind::Parameter | NameKind::MachineError);
+            for id in settings.into_iter().filter(is_setting) {
+                let name = self.name(id);
+                list.add_text(name, CompletionKind::Setting, self.signature(id), format!("{name}: "), 0);
+            }
+            return;
+        }
         // another job's names may be asked for
         let mut at = self.named(around.item, first).or_else(|| self.items().find(|id| self.name(*id) == *first));
         let mut through = None;
@@ -41,6 +53,8 @@ impl Analysis {
                 list.symbols(members.iter().copied(), &[NameKind::ToolSurface], 0);
                 list.symbols(members, &[NameKind::Parameter, NameKind::Value, NameKind::Profile], 1);
             }
+            // points have no axes, and what is expected of them follows from points
+            NameKind::MachineInstance if self.is_of_points(cursor, around) => list.symbols(members, &VALUES, 0),
             NameKind::MachineInstance => {
                 list.symbols(members.iter().copied(), &VALUES, 0);
                 list.symbols(members, &[NameKind::Axis, NameKind::Frame], 1);
@@ -131,20 +145,38 @@ impl Analysis {
             .collect()
     }
 
-    /// The unknowns of the surfaces that are sampled around a place: parameters of their tools' surfaces, and motions.
+    /// Whether something is said of points, or expected, in a job.
+    fn is_of_points(&self, cursor: &Cursor<'_>, around: &Around) -> bool {
+        let is_expected = cursor.opening() == "expect" && self.stands_in_job(around);
+        is_expected || ["sample", "mill"].contains(&cursor.block())
+    }
+
+    /// The unknowns of the surfaces that are sampled around a place, or named in what is expected: parameters of their tools' surfaces, and the
+    /// motions that they are made over.
     pub(super) fn sampled_unknowns(&self, cursor: &Cursor<'_>, around: &Around) -> Vec<SymbolId> {
-        let head = cursor.blocks.last().map(|block| &cursor.before[block.first..]).unwrap_or_default();
+        let is_of_points = self.is_of_points(cursor, around);
+        let head = match cursor.blocks.last() {
+            _ if cursor.opening() == "expect" => &cursor.statement[..],
+            Some(block) => &cursor.before[block.first..],
+            None => &[],
+        };
         let names = head.iter().take_while(|said| **said != "{");
-        let mut found: Vec<SymbolId> = Vec::new();
+        let (mut found, mut made): (Vec<SymbolId>, Vec<Span>) = Default::default();
         for surface in names.filter_map(|name| self.named(around.item, name)) {
             let mut at = Some(surface);
             for _ in 0..8 {
                 let Some(of) = at.filter(|of| self.kind(*of) != NameKind::ToolSurface) else { break };
+                made.push(self.index.symbol(of).extent);
                 at = self.made_from(of);
             }
             found.extend(at.into_iter().flat_map(|of| self.unknowns_of(of)));
         }
-        found.extend(around.members.iter().filter(|id| self.kind(**id) == NameKind::Motion));
+        let is_over = |id: &SymbolId| {
+            let is_within = |of: &Span, span: Span| of.file == span.file && (of.start..of.end).contains(&span.start);
+            self.index.uses(*id).any(|entry| made.iter().any(|of| is_within(of, entry.span)))
+        };
+        let motions = around.members.iter().copied().filter(|id| self.kind(*id) == NameKind::Motion);
+        found.extend(motions.filter(|id| !is_of_points || is_over(id)));
         found
     }
 

@@ -146,7 +146,12 @@ impl Analysis {
             return false;
         }
         list.symbols(self.sampled_unknowns(cursor, around), &[NameKind::SurfaceParameter, NameKind::Motion], 0);
-        list.words(vocabulary().coordinates, CompletionKind::Keyword, "coordinate of a point", 0);
+        let words = vocabulary();
+        list.words(words.coordinates, CompletionKind::Keyword, "coordinate of a point", 0);
+        if !["keep", "require"].contains(&cursor.last()) {
+            list.words(words.of_outlines, CompletionKind::Keyword, "of the flank of a blank", 0);
+            list.words(&["points"], CompletionKind::Keyword, "of a table", 0);
+        }
         true
     }
 

@@ -118,7 +118,7 @@ impl Analysis {
         list.symbols(around.members.iter().copied(), &[NameKind::Coordinate], 0);
     }
 
-    fn stands_in_job(&self, around: &Around) -> bool {
+    pub(super) fn stands_in_job(&self, around: &Around) -> bool {
         around.item.is_some_and(|item| self.kind(item) == NameKind::Job)
     }
 }
