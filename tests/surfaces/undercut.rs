@@ -411,8 +411,8 @@ fn trimmed(
     let problem = SurfaceProblem::new(&first, coordinates);
     let (mut points, _) = problem.expect("nothing is unbound").solve(targets, counts);
     let intersection = Intersection::new([&first, &second], coordinates).expect("nothing is unbound");
-    let meetings = trim(&mut points, targets, counts, &intersection, 0);
-    (points, meetings.concat())
+    let meetings = trim(&mut points, targets, counts, (&[(intersection, 0)], None));
+    (points, meetings.concat().concat())
 }
 
 /// The rows of a grid of two coordinates.
