@@ -26,7 +26,7 @@ def results(job):
         "flank.tolerance/1": job.tolerance("concave", scatter={"m.radial_distance": "5 um"}, sweep=10),
         "flank.convert/2": job.convert("specs/machines/free_form.chain", positions=11),
         "flank.settings/1": flank.load("specs/bevel/thesis_gear.chain").convert("specs/machines/cradle.chain", fit="work_offset"),
-        "flank.solid/1": job.solid(),
+        "flank.solid/2": job.solid(),
         "flank.mesh/1": job.mesh(elements=(3, 4, 3)),
         "flank.mill/1": flank.load("specs/bevel/milled_pinion.chain").mill("finish"),
         "flank.plot/2": job.plot("machine"),
@@ -196,7 +196,7 @@ def test_settings_of_another_machine(results):
 
 
 def test_bodies_and_bricks(results, tmp_path):
-    body = results["flank.solid/1"]
+    body = results["flank.solid/2"]
     numbers = body.solids["pinion"]
     assert numbers["teeth"] == 19
     # the mesh is inside by its deviation at most

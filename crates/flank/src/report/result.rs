@@ -145,7 +145,7 @@ pub struct BuiltSolid {
     pub outline: Vec<SolidEdge>,
     /// Of the body; null where none could be built.
     pub volume_mm3: Option<f64>,
-    /// What gauges find on the body, as in flank.solid/1; null where none could be built.
+    /// What gauges find on the body, as in flank.solid/2; null where none could be built.
     pub gauges: Option<GaugeNumbers>,
     /// Why there is no body.
     pub no_body: Option<String>,

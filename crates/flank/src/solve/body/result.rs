@@ -13,7 +13,7 @@ use crate::solve::body::mounted::Mounting;
 
 /// Bodies of a job, of `flank solve` with option `solid`.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.solid/1")]
+#[serde(tag = "schema", rename = "flank.solid/2")]
 pub struct SolidResult {
     /// The job of the spec.
     pub job: String,
