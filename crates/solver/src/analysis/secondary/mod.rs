@@ -89,7 +89,11 @@ impl SecondaryCutting {
 /// The pieces of a tool with their nets, and what all of them slide along.
 fn netted(pieces: Vec<Piece>) -> (Vec<Piece>, Option<Slip>) {
     let touches: Vec<Vec<Touch>> = pieces.iter().map(|piece| piece.seen().touches()).collect();
-    let along = |slip: Slip| Some((touches.iter().map(|own| slip.along(own)).collect::<Option<Vec<_>>>()?, slip));
+    let along = |slip: Slip| {
+        let slides = touches.iter().map(|own| slip.along(own)).collect::<Option<Vec<_>>>()?;
+        let may_slide = pieces.iter().zip(&slides).all(|(piece, slide)| piece.may_slide(*slide));
+        may_slide.then_some((slides, slip))
+    };
     let (slides, slip) = match Slip::of(&touches.concat()).and_then(along) {
         Some((slides, slip)) => (slides, Some(slip)),
         None => (vec![[0.0; 2]; pieces.len()], None),

@@ -25,6 +25,9 @@ const STILL: f64 = 1e-7;
 const MOST_STEPS: usize = 12;
 /// How far beyond its range a parameter is followed to the foot, as a share of the range.
 const BEYOND: f64 = 0.05;
+/// A piece that slides in itself is followed beyond either end of its range by no more than this many times the range: a short thread with a large
+/// lead would have more cells there than on itself.
+const MOST_BEYOND: f64 = 2.0;
 /// A foot that lies no farther beyond the end of a piece than this, mm, lies on it: ways lead through the very end, above all those of
 /// points that the end generates, and rounding must not decide whether the piece is met.
 const END: f64 = 1e-7;
@@ -128,6 +131,11 @@ impl Piece {
     /// A place on the piece after it slid in itself by an angle.
     pub(super) fn slid(&self, at: [f64; 2], by: f64) -> [f64; 2] {
         [0, 1].map(|k| at[k] + by * self.slide[k])
+    }
+
+    /// Whether the piece is long enough to be followed beyond its ends as far as it would slide.
+    pub(super) fn may_slide(&self, slide: [f64; 2]) -> bool {
+        (0..2).all(|k| slide[k].abs() * MOST_SLIP <= MOST_BEYOND * self.ranges[k].width())
     }
 
     /// How far beyond either end of a range the piece is followed.
@@ -451,6 +459,21 @@ mod tests {
     use flank_expr::geometry;
 
     use super::*;
+
+    /// A thread of a tenth of a degree would be followed over a thousand times its length.
+    #[test]
+    fn a_short_thread_is_not_followed_beyond_its_ends() {
+        let graph = Graph::new();
+        let unknowns = ["u", "theta"].map(|name| graph.variable(name));
+        let [u, theta] = unknowns;
+        let position = geometry::Vector3([u * theta.cos(), u * theta.sin(), u * 0.3 + theta * 5.0]);
+        let surface = geometry::Surface::parametric(unknowns, position, false);
+        for (turn, may_slide) in [(4.0, true), (0.002, false)] {
+            let ranges = [Range { low: 20.0, high: 25.0 }, Range { low: 0.0, high: turn }];
+            let piece = Piece::new(0, &BoundSurface::new(&surface, ranges.to_vec(), &[])).expect("nothing is unbound");
+            assert_eq!(piece.may_slide([0.0, 1.0]), may_slide);
+        }
+    }
 
     /// A saddle bends up one way and down the other; its parameters run askew.
     #[test]
