@@ -389,7 +389,8 @@ impl Way<'_, '_> {
             return None;
         }
         let mut middle = self.sight_at(0.5 * (a.place.motion + b.place.motion), a)?;
-        self.between(a, &mut middle, halvings + 1).or_else(|| self.between(&mut middle, b, halvings + 1))
+        let cuts = [self.between(a, &mut middle, halvings + 1), self.between(&mut middle, b, halvings + 1)];
+        cuts.into_iter().flatten().reduce(Cut::deeper)
     }
 
     /// Whether two places are nearest to parts of the piece that lie apart, as the turns of a thread do, and neither part is met between
