@@ -267,6 +267,22 @@ fn what_no_report_checks_depends_on_contacts() {
     assert!(some == 2 && !pair.contains("Meshing") && pair.contains("Contact under load"), "{pair}");
 }
 
+/// Steel that the tool takes away of a body is told of in the report, too: a cutter of nearly as many teeth as its ring, whose depth
+/// `what_the_tool_cuts_in_another_position_is_told` holds against the involute.
+#[test]
+fn what_a_body_has_too_much_is_told() {
+    let out = folder("report_uncut");
+    let spec = "specs/bodies/shaped_gear_body.chain";
+    let job = ["--job", "shaped_internal_gear_body"];
+    let set = ["--set", "teeth=30", "--set", "cutter_teeth=27", "--set", "c.teeth=27", "--set", "c.addendum=4.2 mm"];
+    let told = reported(&[&[spec][..], &job, &set].concat(), &out, 3);
+    let not_done = told["not_done"].as_array().expect("a list");
+    let of_body = not_done.iter().find(|of| of["kind"] == "not_cut").expect("the body is told of");
+    let message = of_body["message"].as_str().expect("a message");
+    assert!(message.contains("`ring` has steel up to 0.0738 mm deep"), "{message}");
+    assert!(read(out.join("shaped_internal_gear_body.report.html")).contains("has steel up to 0.0738 mm deep"));
+}
+
 #[test]
 fn the_same_job_gives_the_same_bytes() {
     let [first, second] = ["first", "second"].map(|name| {

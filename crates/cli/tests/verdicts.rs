@@ -278,6 +278,27 @@ job wheel {
     assert!(told.contains(&format!("keep {}: ", keep["name"].as_str().expect("a name"))), "{told}");
 }
 
+/// Four branches that no unknown and no sum of two tells apart, as one of them means the same after a turn: what is offered of each is two
+/// conditions, and chooses it.
+#[test]
+fn what_is_offered_of_a_periodic_unknown_chooses_its_branch() {
+    let folder = folder("periodic");
+    let spec = std::fs::read_to_string(top().join("tests/surfaces/specs/ring_disc.chain")).expect("the spec is there");
+    let (told, surface) = solved(&folder, &spec, 0);
+    let found = surface["branches"]["found"].as_array().expect("branches");
+    let offered: Vec<&str> = told.split('`').filter(|code| code.starts_with("keep ")).collect();
+    assert_eq!((found.len(), offered.len()), (4, 4), "{told}");
+    for (branch, keep) in found.iter().zip(offered) {
+        let last = "by 4\n";
+        let (_, kept) = solved(&folder, &spec.replace(last, &format!("{last}        {keep}\n")), 0);
+        let chosen = kept["branches"]["found"].as_array().expect("branches");
+        let [chosen] = &chosen[..] else { panic!("{keep}: {chosen:?}") };
+        assert!(kept["outcomes"]["solved"].as_u64() >= Some(10), "{keep}: {kept}");
+        let turns = |branch: &serde_json::Value| branch["unknowns"][2]["value"].as_f64().expect("a number");
+        assert!((turns(branch) - turns(chosen)).abs() < 1e-6, "{keep}: {branch} {chosen}");
+    }
+}
+
 /// With a table that stands still no edge of the hob comes back to where the ideal edges were: what is left is undecided everywhere, which
 /// a few points tell, and no point is searched for thousands of edges.
 #[test]

@@ -189,7 +189,7 @@ pub(crate) fn solved<'g>(
     let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
     let told = is_ambiguous.then(|| {
         let at = branches::place(coordinates, effort.anchor);
-        branches::listed(of.surface, (&problem.points(&effort.branches), &effort.courses), &at)
+        branches::listed(of.surface, problem.periodic(), (&problem.points(&effort.branches), &effort.courses), &at)
     });
     (points, told)
 }

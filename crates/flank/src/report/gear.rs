@@ -9,6 +9,7 @@ use crate::compare::trace_result::{FlankTraces, TraceNumbers};
 use crate::draw::{Subject, traces};
 use crate::project::choices::PlotKind;
 use crate::project::failure::Failure;
+use crate::project::remark::NotDone;
 use crate::solve::body::gauges::measured;
 use crate::solve::body::result::GaugeNumbers;
 use crate::solve::body::{refusal, space};
@@ -21,17 +22,24 @@ pub(super) struct Gear<'j> {
     solid: &'j Solid,
     /// Volume, mm³, and what gauges find; or why there is no body.
     pub(super) measured: Result<(f64, GaugeNumbers), String>,
+    /// Steel that the body has and that tools take away.
+    pub(super) uncut: Vec<NotDone>,
 }
 
 /// # Errors
 /// If the work is cancelled.
 pub(super) fn gears<'j>(subject: &Subject<'j, '_>) -> Result<Vec<Gear<'j>>, Failure> {
     let gear = |solid: &'j Solid| {
-        let measured = match space::body(subject.job(), solid, subject.session()) {
-            Ok(made) => Ok((made.body.mass_properties().volume, measured(&made.body, None))),
-            Err(failure) => Err(refusal::no_body(solid, failure)?.message),
+        let (job, session) = (subject.job(), subject.session());
+        let made = match space::body(job, solid, session) {
+            Ok(made) => made,
+            Err(failure) => {
+                let reason = refusal::no_body(solid, failure)?.message;
+                return Ok(Gear { solid, measured: Err(reason), uncut: Vec::new() });
+            }
         };
-        Ok(Gear { solid, measured })
+        let (_, uncut) = made.uncut(job, solid, session)?;
+        Ok(Gear { solid, measured: Ok((made.body.mass_properties().volume, measured(&made.body, None))), uncut })
     };
     subject.job().solids.iter().map(gear).collect()
 }
@@ -54,7 +62,7 @@ pub(super) fn section(findings: &Findings<'_, '_>) -> Option<ReportSection> {
 }
 
 fn of_gear(gear: &Gear<'_>) -> Vec<Block> {
-    let Gear { solid, measured } = gear;
+    let Gear { solid, measured, .. } = gear;
     let heading = Block::Heading(solid.name.clone());
     let teeth = ("teeth".to_string(), solid.teeth.to_string());
     let (volume, gauges) = match measured {

@@ -182,6 +182,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         all.extend(cut::unknown(solved.iter().map(Solved::left)));
         all.extend(certify::failed(solved));
         all.extend(travel::beyond(self.job, solved));
+        all.extend(self.gears.iter().flat_map(|gear| gear.uncut.iter().cloned()));
         all.extend(self.contacts.iter().flat_map(|(contact, _)| contact.not_done.iter().cloned()));
         all.extend(self.millings.iter().flat_map(|(milling, _)| milling.not_done.iter().cloned()));
         all.extend(step::missed(&self.faces, self.request.step.unwrap_or_default()));
@@ -258,6 +259,7 @@ impl<'j, 'g> Findings<'j, 'g> {
         if undercut > 0 {
             more.push(format!("{undercut} points are cut away by the tool that generates them (undercut)"));
         }
+        more.extend(self.gears.iter().flat_map(|gear| gear.uncut.iter().map(|told| told.message.clone())));
         more.extend(travel::beyond(self.job, self.solved()).into_iter().map(|axis| axis.message));
         more.extend(required::missed(self.solved()).into_iter().map(|missed| missed.message));
         Block::Notice(if is_good { Tone::Good } else { Tone::Bad }, text, more)

@@ -31,16 +31,17 @@ pub(crate) fn ambiguous(solved: &[Solved<'_, '_>]) -> Vec<NotDone> {
 
 /// What would select each of the branches of a surface.
 fn proposed(solved: &Solved<'_, '_>) -> Vec<Keep> {
-    keep::proposed(&solved.surface.unknowns, &solved.branches, &solved.effort.courses)
+    keep::proposed((&solved.surface.unknowns, &solved.periodic), &solved.branches, &solved.effort.courses)
 }
 
 /// The branches of a surface at a place, with what would select each. `courses` are those of a [`GridReport`](flank_solver::GridReport).
 pub(crate) fn listed(
     surface: &GeneratedSurface<'_>,
+    periodic: &[bool],
     (branches, courses): (&[SurfacePoint], &[Vec<Vec<f64>>]),
     at: &str,
 ) -> NotDone {
-    let keeps = keep::proposed(&surface.unknowns, branches, courses);
+    let keeps = keep::proposed((&surface.unknowns, periodic), branches, courses);
     listed_with(surface, branches, &keeps, at, |_| String::new())
 }
 
@@ -157,7 +158,7 @@ pub(crate) fn elsewhere(solved: &[Solved<'_, '_>]) -> Vec<Remark> {
 /// What selects a branch at another place: against the point of the surface's own branch there, else against any solved one.
 fn selecting(solved: &Solved<'_, '_>, root: &SurfacePoint, beside: Option<&SurfacePoint>) -> Option<Keep> {
     let own = beside.or(solved.points.iter().find(|point| point.outcome == Outcome::Solved))?;
-    keep::against(&solved.surface.unknowns, own, root)
+    keep::against((&solved.surface.unknowns, &solved.periodic), own, root)
 }
 
 /// What could not be decided of the ranges of each surface.
@@ -216,7 +217,7 @@ pub(crate) fn search(solved: &Solved<'_, '_>) -> BranchSearch {
         BranchPoint {
             unknowns: values.map(|(of, x)| NamedValue::new(&of.name, of.dimension, *x)).collect(),
             position: branch.position,
-            keep: keep.map(Keep::extent),
+            keep: keep.and_then(Keep::extent),
         }
     };
     let found = solved.branches.iter().enumerate().map(|(number, root)| branch(root, keeps.get(number)));

@@ -13,11 +13,15 @@ const DECIMALS: usize = 4;
 /// Branches are distinguished by what differs by this share of its range at the least: the decimals show that.
 const APART: f64 = 1e-3;
 
-/// A condition that one branch meets and the others do not.
-pub(crate) struct Keep {
+/// What one branch meets and the others do not: a condition, or two together.
+pub(crate) struct Keep(Vec<Condition>);
+
+struct Condition {
     /// As it stands in a spec before the ends: `spindle`, `apart = spindle + tau`.
     of: String,
     dimension: Dimension,
+    /// Of the unknowns, in the sum that it is about.
+    weights: Vec<f64>,
     low: f64,
     high: f64,
 }
@@ -30,19 +34,44 @@ struct Function {
     /// What it may be in the ranges of the unknowns.
     low: f64,
     high: f64,
-    /// Whether this is a whole turn, behind whose end its beginning may come again.
+    /// Whether this means the same after a turn, behind whose end its beginning comes again.
     is_turn: bool,
 }
 
 impl Keep {
-    /// `keep spindle: 0.0000 deg .. 180.0000 deg`
+    /// `keep spindle: 0.0000 deg .. 180.0000 deg`; two conditions as they stand in a sample.
     pub(crate) fn text(&self) -> String {
+        self.0.iter().map(Condition::text).collect::<Vec<String>>().join(", ")
+    }
+
+    /// The condition, if it is one alone.
+    pub(crate) fn extent(&self) -> Option<Extent> {
+        let [of] = &self.0[..] else { return None };
+        Some(Extent::new(&of.of, of.dimension, Some((of.low, of.high))))
+    }
+
+    /// Whether some unknowns meet it, perhaps some turns of a periodic one further on, as a sample takes it.
+    fn holds(&self, unknowns: &[f64], periodic: &[bool]) -> bool {
+        let turned = |by: &[f64]| self.0.iter().all(|of| (of.low..=of.high).contains(&(of.at(unknowns) + of.at(by))));
+        let turns = (0..unknowns.len()).filter(|k| periodic[*k]).flat_map(|k| [-2.0, -1.0, 1.0, 2.0].map(|by| (k, by)));
+        let mut by = vec![0.0; unknowns.len()];
+        turned(&by)
+            || turns.into_iter().any(|(k, turns)| {
+                by.fill(0.0);
+                by[k] = turns * TAU;
+                turned(&by)
+            })
+    }
+}
+
+impl Condition {
+    fn text(&self) -> String {
         let value = |x: f64| units::text(self.dimension, x, DECIMALS);
         format!("keep {}: {} .. {}", self.of, value(self.low), value(self.high))
     }
 
-    pub(crate) fn extent(&self) -> Extent {
-        Extent::new(&self.of, self.dimension, Some((self.low, self.high)))
+    fn at(&self, unknowns: &[f64]) -> f64 {
+        self.weights.iter().zip(unknowns).map(|(weight, x)| weight * x).sum()
     }
 }
 
@@ -65,31 +94,50 @@ impl Function {
         least / (self.high - self.low)
     }
 
+    /// The branches whose values follow each other without a gap, together.
+    fn groups(&self, branches: &Branches) -> Vec<Vec<usize>> {
+        let mut spans: Vec<(usize, (f64, f64))> =
+            branches.iter().enumerate().map(|(number, points)| (number, self.span(points))).collect();
+        spans.sort_by(|a, b| a.1.0.total_cmp(&b.1.0));
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut end = f64::NEG_INFINITY;
+        for (number, (low, high)) in spans {
+            match groups.last_mut().filter(|_| low - end <= APART * (self.high - self.low)) {
+                Some(group) => group.push(number),
+                None => groups.push(vec![number]),
+            }
+            end = end.max(high);
+        }
+        groups
+    }
+
     /// From halfway to the branch below to halfway to the one above. Where there is none, to the end of the ranges; a branch that lies outside
     /// of them at the places where it was looked for may come from afar.
-    fn around(&self, branches: &[Vec<Vec<f64>>], number: usize) -> Keep {
+    fn around(&self, branches: &[Vec<Vec<f64>>], number: usize) -> Condition {
         let (own_low, own_high) = self.span(&branches[number]);
         let others = branches.iter().enumerate().filter(|(k, _)| *k != number).map(|(_, points)| self.span(points));
-        let turn = |by: f64| others.clone().map(move |(low, high)| (low + by, high + by)).filter(|_| self.is_turn);
-        let below = others.clone().chain(turn(-TAU)).map(|span| span.1).filter(|x| *x < own_low).reduce(f64::max);
-        let above = others.clone().chain(turn(TAU)).map(|span| span.0).filter(|x| *x > own_high).reduce(f64::min);
         let width = self.high - self.low;
         let [lowest, highest] = [
             if own_low < self.low { own_low - width } else { self.low },
             if own_high > self.high { own_high + width } else { self.high },
         ];
+        let turn = |by: f64| others.clone().map(move |(low, high)| (low + by, high + by)).filter(|_| self.is_turn);
+        let before = others.clone().chain(turn(-TAU).filter(|(_, high)| *high > lowest)).map(|span| span.1);
+        let behind = others.clone().chain(turn(TAU).filter(|(low, _)| *low < highest)).map(|span| span.0);
+        let below = before.filter(|x| *x < own_low).reduce(f64::max);
+        let above = behind.filter(|x| *x > own_high).reduce(f64::min);
         let low = below.map_or(lowest, |x| 0.5 * (x + own_low));
         let high = above.map_or(highest, |x| 0.5 * (x + own_high));
-        Keep { of: self.of.clone(), dimension: self.dimension, low, high }
+        Condition { of: self.of.clone(), dimension: self.dimension, weights: self.weights.clone(), low, high }
     }
 }
 
 /// What may tell branches apart: unknowns, then sums and differences of two angles, as of a spindle and the thread that it turns.
-fn functions(unknowns: &[RangedVariable<'_>]) -> Vec<Function> {
+fn functions(unknowns: &[RangedVariable<'_>], periodic: &[bool]) -> Vec<Function> {
     let single = |k: usize| {
         let of = &unknowns[k];
         let weights = (0..unknowns.len()).map(|other| f64::from(u8::from(other == k))).collect();
-        let is_turn = units::is_angle(of.dimension) && (of.high - of.low - TAU).abs() < APART;
+        let is_turn = periodic[k];
         Function { of: of.name.clone(), dimension: of.dimension, weights, low: of.low, high: of.high, is_turn }
     };
     let both = |a: usize, b: usize, sign: f64| {
@@ -111,26 +159,69 @@ fn functions(unknowns: &[RangedVariable<'_>]) -> Vec<Function> {
     (0..unknowns.len()).map(single).chain(pairs).collect()
 }
 
-/// What distinguishes some branches, each known at some points: wholly if that can be, by the first point of each otherwise.
-fn chosen(unknowns: &[RangedVariable<'_>], branches: &[Vec<Vec<f64>>]) -> Vec<Keep> {
-    let functions = functions(unknowns);
-    let firsts: Vec<Vec<Vec<f64>>> = branches.iter().map(|points| points[..1].to_vec()).collect();
-    let best = |branches: &[Vec<Vec<f64>>], functions: &[Function]| {
-        let gaps = functions.iter().map(|function| function.gap(branches)).enumerate();
-        gaps.filter(|(_, gap)| *gap > APART).max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))).map(|(k, _)| k)
-    };
+/// Some branches, each known at some points.
+type Branches = [Vec<Vec<f64>>];
+
+/// What distinguishes some branches: wholly if that can be, by the first point of each otherwise. A condition alone is better than two
+/// together, an unknown better than a sum of two, and the widest gap best.
+fn chosen(unknowns: &[RangedVariable<'_>], branches: &Branches, periodic: &[bool]) -> Vec<Keep> {
+    let functions = functions(unknowns, periodic);
     let (single, of_two) = functions.split_at(unknowns.len());
-    let ways = [(branches, single), (branches, of_two), (&firsts, single)];
-    let found = ways.into_iter().find_map(|(points, among)| best(points, among).map(|k| (points, &among[k])));
-    found.map_or_else(Vec::new, |(points, function)| {
-        (0..branches.len()).map(|number| function.around(points, number)).collect()
-    })
+    let firsts: Vec<Vec<Vec<f64>>> = branches.iter().map(|points| points[..1].to_vec()).collect();
+    let alone = |points: &Branches, among: &[Function]| best(alone_by(points, among), points, periodic);
+    let together = |points: &Branches| best(together_by(points, single), points, periodic);
+    let found = alone(branches, single).or_else(|| alone(branches, of_two)).or_else(|| together(branches));
+    found.or_else(|| alone(&firsts, single)).or_else(|| together(&firsts)).unwrap_or_default()
+}
+
+/// What takes each branch, with the least gap that it leaves between two of them.
+type Offer = (f64, Vec<Keep>);
+
+/// Of some offers the one with the widest gap that keeps each branch and no other one, also where a periodic unknown has turned.
+fn best(mut offers: Vec<Offer>, branches: &Branches, periodic: &[bool]) -> Option<Vec<Keep>> {
+    offers.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let tells_apart = |keeps: &[Keep]| {
+        keeps.iter().enumerate().all(|(number, keep)| {
+            let mut points = branches.iter().enumerate().flat_map(|(of, points)| points.iter().map(move |x| (of, x)));
+            points.all(|(of, point)| keep.holds(point, periodic) == (of == number))
+        })
+    };
+    offers.into_iter().map(|(_, keeps)| keeps).find(|keeps| tells_apart(keeps))
+}
+
+/// One condition on each branch.
+fn alone_by(branches: &Branches, functions: &[Function]) -> Vec<Offer> {
+    let gaps = functions.iter().map(|of| (of.gap(branches), of)).filter(|(gap, _)| *gap > APART);
+    gaps.map(|(gap, of)| (gap, (0..branches.len()).map(|k| Keep(vec![of.around(branches, k)])).collect())).collect()
+}
+
+/// Two conditions on each branch: the first one parts groups of branches, the second one those of a group.
+fn together_by(branches: &Branches, functions: &[Function]) -> Vec<Offer> {
+    let pairs = functions.iter().flat_map(|first| functions.iter().map(move |second| (first, second)));
+    let offer = |(first, second): (&Function, &Function)| {
+        let groups = first.groups(branches);
+        let points_of = |group: &Vec<usize>| group.iter().flat_map(|k| branches[*k].clone()).collect();
+        let hulls: Vec<Vec<Vec<f64>>> = groups.iter().map(points_of).collect();
+        let mut least = first.gap(&hulls);
+        let mut keeps: Vec<(usize, Keep)> = Vec::new();
+        for (number, group) in groups.iter().enumerate() {
+            let members: Vec<Vec<Vec<f64>>> = group.iter().map(|k| branches[*k].clone()).collect();
+            least = least.min(if group.len() > 1 { second.gap(&members) } else { f64::INFINITY });
+            keeps.extend(group.iter().enumerate().map(|(place, k)| {
+                let within = (group.len() > 1).then(|| second.around(&members, place));
+                (*k, Keep([first.around(&hulls, number)].into_iter().chain(within).collect()))
+            }));
+        }
+        keeps.sort_by_key(|(number, _)| *number);
+        (groups.len() > 1 && least > APART).then(|| (least, keeps.into_iter().map(|(_, keep)| keep).collect()))
+    };
+    pairs.filter_map(offer).collect()
 }
 
 /// For each of some branches; none if there are not several, or nothing distinguishes them. `courses` are the unknowns of each at
-/// further points, as far as they are known.
+/// further points, as far as they are known; `periodic` says which unknowns mean the same after a turn.
 pub(crate) fn proposed(
-    unknowns: &[RangedVariable<'_>],
+    (unknowns, periodic): (&[RangedVariable<'_>], &[bool]),
     branches: &[SurfacePoint],
     courses: &[Vec<Vec<f64>>],
 ) -> Vec<Keep> {
@@ -139,13 +230,17 @@ pub(crate) fn proposed(
         std::iter::once(branch.unknowns.clone()).chain(followed).collect()
     };
     let branches: Vec<Vec<Vec<f64>>> = branches.iter().enumerate().map(points).collect();
-    if branches.len() > 1 { chosen(unknowns, &branches) } else { Vec::new() }
+    if branches.len() > 1 { chosen(unknowns, &branches, periodic) } else { Vec::new() }
 }
 
 /// For a branch against the one that was followed, which is known at one point.
-pub(crate) fn against(unknowns: &[RangedVariable<'_>], own: &SurfacePoint, other: &SurfacePoint) -> Option<Keep> {
+pub(crate) fn against(
+    (unknowns, periodic): (&[RangedVariable<'_>], &[bool]),
+    own: &SurfacePoint,
+    other: &SurfacePoint,
+) -> Option<Keep> {
     let branches = [own, other].map(|point| vec![point.unknowns.clone()]);
-    chosen(unknowns, &branches).pop()
+    chosen(unknowns, &branches, periodic).pop()
 }
 
 #[cfg(test)]

@@ -215,7 +215,7 @@ pub struct BranchPoint {
     pub unknowns: Vec<NamedValue>,
     /// In the surface's frame, mm.
     pub position: [f64; 3],
-    /// What in a sample selects this branch; null where there is no other, or nothing distinguishes it.
+    /// What in a sample selects this branch; null where there is no other, or no single range distinguishes it.
     pub keep: Option<Extent>,
 }
 

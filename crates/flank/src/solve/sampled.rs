@@ -68,6 +68,7 @@ pub(crate) fn solve_surface<'j, 'g>(
         arrays: None,
         needed,
         effort,
+        periodic: problem.periodic().to_vec(),
         branches,
         elsewhere,
         kept_out,
@@ -96,6 +97,7 @@ fn in_bands<'j, 'g>(
         bindings: job.bindings(),
         needed: Vec::new(),
         lines: streamed.drawn(),
+        periodic: streamed.problem().periodic().to_vec(),
         branches: streamed.problem().points(&effort.branches),
         elsewhere: elsewhere(streamed.problem(), &effort),
         kept_out: kept_out(job, surface, (&effort, &summary), wanted.session),
@@ -157,7 +159,7 @@ fn ambiguous<'g>(
     let is_ambiguous = points.iter().any(|point| point.outcome == Outcome::Ambiguous);
     is_ambiguous.then(|| {
         let at = branches::place(&sample.coordinates, effort.anchor);
-        branches::listed(surface, (&problem.points(&effort.branches), &effort.courses), &at)
+        branches::listed(surface, problem.periodic(), (&problem.points(&effort.branches), &effort.courses), &at)
     })
 }
 

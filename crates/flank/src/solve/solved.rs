@@ -37,6 +37,8 @@ pub(crate) struct Solved<'j, 'g> {
     pub(crate) trims: Vec<Line<'j, 'g>>,
     /// Which positions of its tool its points were checked against.
     pub(crate) positions: Positions,
+    /// Which unknowns mean the same after a turn.
+    pub(crate) periodic: Vec<bool>,
     /// Where each of the branches at the anchor is.
     pub(crate) branches: Vec<SurfacePoint>,
     /// Branches that have points at other places, each with the point of its own branch there if that has one.

@@ -204,6 +204,11 @@ impl SurfaceProblem {
         }
     }
 
+    /// Which unknowns mean the same after a turn.
+    pub fn periodic(&self) -> &[bool] {
+        &self.periodic
+    }
+
     /// The system that is solved for each point.
     pub fn system(&self) -> &System {
         &self.system

@@ -24,7 +24,6 @@ use crate::solve::body::bricks_result::{BrickNumbers, MeshResult, exact_volume};
 use crate::solve::body::file_of;
 use crate::solve::body::refusal;
 use crate::solve::body::space::{self, Space};
-use crate::solve::body::uncut;
 use crate::solve::dataset::header;
 
 /// Bytes that a mesh may take with what its files are made from: what machines of today can spare.
@@ -70,10 +69,7 @@ fn meshed(
             Ok(space) => match one(job, solid, &space, (request, &header), &mut folder)? {
                 Ok(numbers) => {
                     solids.push(numbers);
-                    uncut.extend(uncut::trims_told(solid, &space.untrimmed));
-                    let positions =
-                        uncut::in_other_positions(solid, &space::jobs_of_spaces(job, solid), &space.nodes, session)?;
-                    uncut.extend(uncut::positions_told(solid, &positions));
+                    uncut.extend(space.uncut(job, solid, session)?.1);
                 }
                 Err(refused) => not_done.push(refused),
             },

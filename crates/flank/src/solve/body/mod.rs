@@ -134,9 +134,7 @@ fn one(
     (folder, session): (&mut Folder<'_>, Session<'_>),
 ) -> Result<(SolidNumbers, Shapes, Vec<NotDone>), Failure> {
     let space = space::body(job, solid, session)?;
-    let uncut = uncut::in_other_positions(solid, &space::jobs_of_spaces(job, solid), &space.nodes, session)?;
-    let mut not_done = uncut::trims_told(solid, &space.untrimmed);
-    not_done.extend(uncut::positions_told(solid, &uncut));
+    let (uncut, mut not_done) = space.uncut(job, solid, session)?;
     let space::Space { body, names, off: error, into_steel, .. } = space;
     let part = match request.part {
         // from the middle of its space to the middle of the same one a gear of one tooth goes all around

@@ -6,6 +6,7 @@ use flank_solver::{Blank, Body, BodyFault, Chart, Outcome, SurfacePoint, Surface
 use nalgebra::Vector3;
 
 use crate::project::failure::Failure;
+use crate::project::remark::NotDone;
 use crate::project::session::Session;
 use crate::solve::blank;
 use crate::solve::body::borders::{Beside, Borders};
@@ -32,6 +33,24 @@ pub(crate) struct Space {
     pub(crate) nodes: Vec<Vec<Nodes>>,
     /// What surfaces that are none of the body's trim of it.
     pub(crate) untrimmed: Vec<Uncut>,
+}
+
+impl Space {
+    /// What tools take away of the body in other positions, and what tells of that and of what trims it.
+    ///
+    /// # Errors
+    /// If the work is cancelled.
+    pub(crate) fn uncut(
+        &self,
+        job: &Job<'_>,
+        solid: &Solid,
+        session: Session<'_>,
+    ) -> Result<(Vec<Uncut>, Vec<NotDone>), Failure> {
+        let positions = uncut::in_other_positions(solid, &jobs_of_spaces(job, solid), &self.nodes, session)?;
+        let trims = uncut::trims_told(solid, &self.untrimmed).into_iter();
+        let told = trims.chain(uncut::positions_told(solid, &positions)).collect();
+        Ok((positions, told))
+    }
 }
 
 /// A chart with its points, and its surface's normal in the middle times the chart's own: negative where they point to different sides.
@@ -133,7 +152,7 @@ fn elsewhere(solid: &Solid, pieces: &[Piece<'_, '_>], blank: &Blank) -> Option<F
 }
 
 /// The job of each space that differs from the first one, and of that: its parameter says which space it is.
-pub(crate) fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
+fn jobs_of_spaces<'g>(job: &Job<'g>, solid: &Solid) -> Vec<Job<'g>> {
     let Some(each) = &solid.each else { return vec![job.clone()] };
     let of_space = |space: u32| {
         let mut job = Job { name: format!("{} {each} {space}", job.name), ..job.clone() };
