@@ -88,6 +88,18 @@ fn a_new_job_has_its_name_and_values() {
 
 /// As on every other command, of several values for one parameter the last one counts.
 #[test]
+fn given_values_are_laid_out() {
+    let out = folder("laid_out");
+    let path = out.to_str().expect("a plain path");
+    let set = ["--set", "normal_module=3.06mm", "--set", "teeth=36+1", "--out", path];
+    assert!(flank(&[&["new", "helical_gear"][..], &set].concat()).status.success());
+    let file = out.join("hobbing/helical_gear.chain");
+    assert!(std::fs::read_to_string(&file).expect("written").contains("= 3.06 mm"));
+    let run = flank(&["fmt", "--check", file.to_str().expect("a plain path")]);
+    assert!(run.status.success(), "{}", text(&run.stdout));
+}
+
+#[test]
 fn of_values_for_one_parameter_the_last_counts() {
     let out = folder("new-last");
     let set = ["--set", "teeth=100", "--set", "helix_angle=15 deg", "--set", "teeth=37"];

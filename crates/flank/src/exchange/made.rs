@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use flank_chain_dsl::compile_file;
+use flank_chain_dsl::{FileId, compile_file, format};
 use flank_export::{FileSet, WriteError, make_folder};
 use flank_expr::Graph;
 use schemars::JsonSchema;
@@ -50,6 +50,10 @@ impl Made {
     /// Writes what compiles, and names it: the job's own file first. Nothing that stands there is changed.
     pub(super) fn write(mut self, out: &Path) -> Result<Vec<String>, Failure> {
         self.compiled(out)?;
+        // as given values stand there, columns of laws and comments may not line up any more
+        if let Ok(laid_out) = format(&self.files[0].1, FileId(0)) {
+            self.files[0].1 = laid_out;
+        }
         self.check_that_nothing_stands_there(out)?;
         if !is_in_project(out) {
             self.files.push((PathBuf::from(MARKER), MARK.to_owned()));
