@@ -53,6 +53,32 @@ def test_a_value_has_a_name(job):
             job.with_values({name: "1 mm"})
 
 
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({"m.radial_distance": np.array([1.0, 2.0])}, "`m.radial_distance` is a text with a unit"),
+        ({"m.radial_distance": (np.array([1.0]), "mm")}, "`m.radial_distance` is a text with a unit"),
+        ({"m.radial_distance": np.complex128(98)}, "`m.radial_distance` is a text with a unit"),
+        ({"m.radial_distance": (np.ma.masked, "mm")}, "`m.radial_distance` is a text with a unit"),
+        ({"m.radial_distance": (98, None)}, "the unit of `m.radial_distance` is a text"),
+        ({"m.radial_distance": (float("nan"), "mm")}, "`m.radial_distance` is a finite number"),
+        ({"m.radial_distance": "98 mm \ud800"}, "`m.radial_distance` holds .* at index 6"),
+        ({3: "98 mm"}, "the name of a parameter or setting is a text: not 3"),
+    ],
+)
+def test_values_that_are_none_are_told_with_their_names(job, values, words):
+    with pytest.raises(flank.InputError, match=words):
+        job.with_values(values)
+
+
+@pytest.mark.parametrize("call", [flank.loads, flank.format, lambda text: flank.check(text=text)])
+def test_a_spec_is_a_text_of_characters(call):
+    with pytest.raises(flank.InputError, match="index 3, which is half of a surrogate pair"):
+        call("// \ud800")
+    with pytest.raises(flank.InputError, match="the spec is a text: not b'x'"):
+        call(b"x")
+
+
 def test_a_job_has_the_names_of_its_surfaces(job):
     assert list(job) == list(job.surfaces) and "concave" in job and "concav" not in job
 

@@ -1,6 +1,7 @@
 """Points are arrays: without copies, read-only, with the bits of the program's files."""
 
 import gc
+import pickle
 
 import numpy as np
 import pytest
@@ -137,12 +138,21 @@ def test_sensitivity_is_a_derivative(job):
 
 
 def test_names_that_are_not_there(job):
-    with pytest.raises(KeyError, match="concave"):
-        job["concav"]
-    with pytest.raises(KeyError, match="convex"):
-        job.solve()["concav"]
-    with pytest.raises(KeyError, match="roll"):
-        job.solve()["concave"]["k1"]
+    points = job.solve(sensitivity=True)
+    for of, name, known in [
+        (job, "concav", "concave"),
+        (job.parameters, "radial", "m.radial_distance"),
+        (points, "concav", "convex"),
+        (points["concave"], "k1", "roll"),
+        (job["concave"].sensitivity("m.radial_distance"), "c.blade_angle", "m.radial_distance"),
+    ]:
+        with pytest.raises(KeyError, match=known) as caught:
+            of[name]
+        # an error of the package as well, and its text is no repr
+        assert isinstance(caught.value, flank.InputError) and isinstance(caught.value, flank.UnknownName)
+        assert f"`{name}`" in str(caught.value) and not str(caught.value).startswith(("'", '"'))
+        assert str(pickle.loads(pickle.dumps(caught.value))) == str(caught.value)
+    assert job.parameters.get("radial") is None
 
 
 def test_a_relative_path_is_that_of_loading(tmp_path, monkeypatch):

@@ -115,6 +115,44 @@ def test_an_array_has_its_rows_and_columns_where_nothing_was_measured(job):
         assert fit["identification"]["settings"][0]["new"] == pytest.approx(98.0, abs=1e-4)
 
 
+def test_what_is_masked_was_not_measured(job):
+    """As if it were NaN: to the bit, in whatever way the mask comes."""
+    xyz = np.array(job.with_values({"m.radial_distance": "98.0 mm"}).measuring_grid("concave", 5, 9).xyz)
+    mask = np.zeros(xyz.shape, bool)
+    mask[2, 4] = mask[-1, 3, 1] = True
+    with_nan = np.where(mask, np.nan, xyz)
+    # the number below the mask is far beside the flank
+    masked = np.ma.masked_array(np.where(mask, xyz + 0.1, xyz), mask=mask)
+    expected = job.inspect("concave", with_nan)
+    assert np.isnan(expected.um).sum() == 2
+    for measured in (masked, list(masked), masked.astype(object), np.ma.masked_invalid(with_nan)):
+        found = job.inspect("concave", measured)
+        assert np.array_equal(found.um, expected.um, equal_nan=True) and found.rms == expected.rms
+    new = [job.fit("concave", of, vary="m.radial_distance")["identification"]["settings"] for of in (masked, with_nan)]
+    assert new[0] == new[1]
+
+
+def test_messages_about_positions_name_the_array(job):
+    xyz = np.array(job.measuring_grid("concave", 5, 9).xyz)
+    off = xyz.copy()
+    off[3, 6] += 100
+    for wrong, words in [
+        (xyz + 1j, "`measured` is complex"),
+        (off, r"^`measured\[3, 6\]` lies"),
+        (np.full_like(xyz, np.nan), "^`measured` has no point that was measured: in each of 45"),
+        (np.ma.masked_array(xyz, mask=True), "^`measured` has no point that was measured"),
+        ([[[1.0, 2.0, 3.0]], [[1.0, 2.0]]], "^`measured` is no array of numbers"),
+        ([[["a", "b", "c"]]], "^`measured` is no array of numbers"),
+    ]:
+        with pytest.raises(flank.InputError, match=words):
+            job.inspect("concave", wrong)
+    off = np.array(job.measuring_grid("convex", 5, 9).xyz)
+    # so little that the position found for both flanks stays
+    off[3, 6] += 5
+    with pytest.raises(flank.InputError, match=r"^`also\[3, 6\]` lies"):
+        job.fit("concave", xyz, vary="m.radial_distance", also=("convex", off))
+
+
 def test_a_measured_flank_gives_its_settings(job, tmp_path):
     moved = job.with_values({"m.radial_distance": "98.05 mm", "m.machine_root_angle": "15.7 deg"})
     xyz = moved.measuring_grid("concave", 5, 9).xyz

@@ -125,6 +125,8 @@ def test_the_whole_table_is_looked_at_before_anything_runs(job, tmp_path):
         ({head: [98, "x", 50000]}, "`cases`, row 2: `m.radial_distance` is 50000 mm, outside its range"),
         ({head: [98, None]}, "`cases`, row 1: `None` is no number"),
         ({head: [math.nan]}, "no finite number"),
+        ({head: np.ma.masked_array([98.0, 97.0], mask=[False, True])}, "row 1: `masked` is no number"),
+        ({head: np.array([98.0, 98 + 1j])}, "row 0: `np.complex128(98+0j)` is no number"),
         ({head: [98, True, "98"]}, "row 1: `True` is no number"),
         ({head: [98, "", "1,2\n#"]}, "row 1: `''` is no number"),
         ({head: []}, "the study has no case"),

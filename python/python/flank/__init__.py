@@ -25,6 +25,7 @@ from flank._errors import (
     InternalError,
     NotSolved,
     SpecError,
+    UnknownName,
 )
 from flank._job import Job, Surface
 from flank._machines import Bricks, Derivation, Milling, Motion, Settings, Solids
@@ -32,6 +33,7 @@ from flank._pages import Page, Plot, Report
 from flank._parameters import Parameter, Parameters
 from flank._points import SurfacePoints
 from flank._quantities import count as _count
+from flank._quantities import encodable as _encodable
 from flank._results import (
     Contact,
     Deviation,
@@ -79,6 +81,7 @@ __all__ = [
     "SurfacePoints",
     "Synthesis",
     "Tolerance",
+    "UnknownName",
     "check",
     "codes",
     "deviation",
@@ -122,7 +125,7 @@ def loads(text: str, job: str | None = None, *, name: str = "text.chain") -> Job
     >>> flank.loads(text, name="specs/hobbing/mine.chain").name
     'helical_gear'
     """
-    return _one(_flank.load(name, [(name, text)], job), job)
+    return _one(_flank.load(name, [(name, _encodable(text, "the spec"))], job), job)
 
 
 def load_all(path: _Path) -> dict[str, Job]:
@@ -173,7 +176,7 @@ def check(*specs: _Path, text: str | None = None) -> dict[str, _Any]:
     """
     if text is not None:
         name = _os.fspath(specs[0]) if specs else "text.chain"
-        answer = _flank.check([(name, text)])
+        answer = _flank.check([(name, _encodable(text, "the spec"))])
     else:
         answer = _flank.check([(_os.fspath(spec), None) for spec in specs])
     document: dict[str, _Any] = _json.loads(answer.document())
@@ -187,7 +190,7 @@ def format(text: str, *, name: str = "text.chain") -> str:
     >>> flank.format("machine m{axis C:rotary}")
     'machine m { axis C : rotary }\\n'
     """
-    return _flank.layout(name, text)
+    return _flank.layout(name, _encodable(text, "the spec"))
 
 
 def test(*paths: _Path, filter: str | None = None, snapshot: bool = True) -> dict[str, _Any]:

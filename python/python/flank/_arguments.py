@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -59,7 +60,7 @@ def ranges(values: Mapping[str, tuple[Quantity, Quantity]] | None) -> list[tuple
     for name, ends in (values or {}).items():
         if not isinstance(ends, tuple | list) or len(ends) != 2:
             raise InputError(f"`clamp[{name!r}]` is {ends!r}: write two values, (\"20 mm\", \"120 mm\")")
-    return [(name, [text(end) for end in ends]) for name, ends in (values or {}).items()]
+    return [(name, [text(end, f"`clamp[{name!r}]`") for end in ends]) for name, ends in (values or {}).items()]
 
 
 def chosen(value: str, what: str, known: tuple[str, ...]) -> str:
@@ -101,39 +102,59 @@ def parabola(wish: Mapping[str, float | tuple[float, float]]) -> list[float]:
     return [*both("slope"), *both("crowning"), float(bias)]
 
 
+def positions(of: npt.ArrayLike, what: str) -> Floats:
+    """Measured positions (rows, columns, 3), mm; NaN where nothing was measured, which a mask says as well."""
+    try:
+        # of an array in whatever coat, also of a list of rows with masks of their own
+        given = np.ma.array(of, copy=False)
+        if np.iscomplexobj(given):
+            raise InputError(f"`{what}` is complex: measured positions are real numbers, mm")
+        xyz: Floats = np.ma.filled(given.astype(float), np.nan)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"`{what}` is no array of numbers: {error}") from None
+    if xyz.ndim != 3 or xyz.shape[2] != 3:
+        raise InputError(f"measured positions are an array of shape (rows, columns, 3), mm: not {xyz.shape}")
+    return xyz
+
+
 class Measured:
     """A file of measured points: as it is, or made of positions for as long as it is needed."""
 
-    def __init__(self, of: Path_ | npt.ArrayLike | None) -> None:
-        self._of = of
+    def __init__(self, of: Path_ | npt.ArrayLike | None, what: str = "measured") -> None:
+        self._what = what
+        self._path = os.fspath(of) if isinstance(of, str | os.PathLike) else None
+        self._xyz = None if of is None or self._path is not None else positions(of, what)
         self._folder: tempfile.TemporaryDirectory[str] | None = None
 
     @property
     def counts(self) -> tuple[int | None, int | None]:
         """Rows and columns of positions, also where the last ones were not measured; what a file has is found out by its reader."""
-        if self._of is None or isinstance(self._of, str | os.PathLike):
-            return None, None
-        shape = np.shape(self._of)
-        return (shape[0], shape[1]) if len(shape) == 3 else (None, None)
+        return (None, None) if self._xyz is None else (self._xyz.shape[0], self._xyz.shape[1])
 
     def __enter__(self) -> tuple[str | None, str]:
-        if self._of is None:
-            return None, ""
-        if isinstance(self._of, str | os.PathLike):
-            return os.fspath(self._of), ""
-        xyz: Floats = np.asarray(self._of, dtype=float)
-        if xyz.ndim != 3 or xyz.shape[2] != 3:
-            raise InputError(f"measured positions are an array of shape (rows, columns, 3), mm: not {xyz.shape}")
+        if self._xyz is None:
+            return self._path, ""
+        is_measured = np.isfinite(self._xyz).all(axis=-1)
+        if not is_measured.any():
+            raise InputError(f"`{self._what}` has no point that was measured: in each of {is_measured.size}, x, y or z is NaN or masked")
         self._folder = tempfile.TemporaryDirectory(prefix="flank-")
         file = Path(self._folder.name) / "measured.csv"
-        lines = [
-            f"{i + 1},{j + 1},{','.join(repr(float(x)) for x in xyz[i, j])}"
-            for i, j in np.ndindex(xyz.shape[:2])
-            if np.isfinite(xyz[i, j]).all()
-        ]
+        lines = [f"{i + 1},{j + 1},{','.join(repr(float(x)) for x in self._xyz[i, j])}" for i, j in np.argwhere(is_measured)]
         file.write_text("\n".join(["row,column,x,y,z", *lines, ""]))
         return str(file), self._folder.name
 
     def __exit__(self, *_: object) -> None:
         if self._folder is not None:
             self._folder.cleanup()
+
+    def named(self, words: str) -> str:
+        """A message about the file of positions as one about the array, whose owner counts from 0."""
+        if self._folder is None:
+            return words
+        file = str(Path(self._folder.name) / "measured.csv")
+
+        def place(match: re.Match[str]) -> str:
+            return f"`{self._what}[{int(match[1]) - 1}, {int(match[2]) - 1}]` "
+
+        words = re.sub(rf"{re.escape(file)}(?::\d+)?: row (\d+), column (\d+) ", place, words)
+        return words.replace(file, f"`{self._what}`")

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from flank._arguments import Measured
+from flank._errors import InputError
 
 if TYPE_CHECKING:
     from flank._flank import Answer
@@ -17,7 +18,7 @@ Operation = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """An operation on a job: `names` stand before its options, the job of another surface behind them. Calling it asks with further
+    """An operation on a job: `names` stand before its options, the job of another surface behind them. Calling it asks with second_
     options."""
 
     operation: Operation
@@ -45,10 +46,13 @@ class AskedOfMeasured:
 
     def told(self, more: dict[str, Any]) -> tuple[Answer, str]:
         """The answer, and the folder that its texts name and that is gone."""
-        second = None if self.also is None else self.also[1]
-        with Measured(self.measured) as (file, inside), Measured(second) as (other, _):
+        first, second = Measured(self.measured), Measured(None if self.also is None else self.also[1], "also")
+        with first as (file, inside), second as (other, _):
             files = {"measured": file, "and": None if self.also is None else (self.also[0], other)}
-            return self.asked({**files, **more}), inside
+            try:
+                return self.asked({**files, **more}), inside
+            except InputError as error:
+                raise InputError(second.named(first.named(str(error)))) from None
 
     def __call__(self, more: dict[str, Any]) -> Answer:
         return self.told(more)[0]

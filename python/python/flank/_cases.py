@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from flank._errors import InputError
-from flank._quantities import Quantity, amounts, count, text
+from flank._quantities import Quantity, amounts, count, is_real, text
 
 
 def is_path(cases: Any) -> bool:
@@ -56,9 +56,8 @@ def _cells(head: str, values: Any) -> list[str]:
 
 def _cell(value: Any) -> str:
     """A number as the shortest text that is the same number."""
-    is_number = hasattr(value, "__float__") and not isinstance(value, str | bool | np.bool_)
     try:
-        return repr(float(value)) if is_number else _plain(repr(value))
+        return repr(float(value)) if is_real(value) else _plain(repr(value))
     except (TypeError, ValueError):
         return _plain(repr(value))
 
@@ -90,7 +89,7 @@ def ranges(vary: Mapping[str, tuple[Quantity, Quantity, int]]) -> list[tuple[str
             example = '("97.9 mm", "98.1 mm", 21)'
             raise InputError(f"`vary[{name!r}]` is {wanted!r}: write two ends and how many values, for example {example}")
         low, high, many = wanted
-        all_of_them.append((name, [text(low), text(high)], count(many, f"vary[{name!r}]", 1, 100_000_000) or 1))
+        all_of_them.append((name, [text(end, f"`vary[{name!r}]`") for end in (low, high)], count(many, f"vary[{name!r}]", 1, 100_000_000) or 1))
     if not all_of_them:
         raise InputError("`vary` names nothing that differs from case to case")
     return all_of_them

@@ -86,6 +86,14 @@ class InputError(Error):
     """What is asked for does not go together, names something that there is not, or a file is not what it should be."""
 
 
+class UnknownName(InputError, KeyError):
+    """A job or a result has nothing of that name."""
+
+    def __str__(self) -> str:
+        # a KeyError shows its text in quotes
+        return str(self.args[0])
+
+
 class FileError(Error, OSError):
     """A file cannot be written. No file of the operation has its name."""
 

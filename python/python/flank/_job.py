@@ -28,9 +28,9 @@ from flank._arguments import (
     single,
 )
 from flank._asked import Asked, AskedOfMeasured, Operation
-from flank._errors import InputError
+from flank._errors import InputError, UnknownName
 from flank._parameters import Parameters, parameter
-from flank._quantities import Quantity, amounts, count, dimensions, length, names, number, text
+from flank._quantities import Quantity, amounts, count, dimensions, given, length, names, number
 
 
 class Surface:
@@ -192,7 +192,7 @@ class Job:
     def __getitem__(self, name: str) -> Surface:
         if name in self._surfaces:
             return self._surfaces[name]
-        raise KeyError(f"there is no surface `{name}`; there is: {', '.join(self._surfaces)}")
+        raise UnknownName(f"there is no surface `{name}`; there is: {', '.join(self._surfaces)}")
 
     def __contains__(self, name: object) -> bool:
         return name in self._surfaces
@@ -215,7 +215,7 @@ class Job:
         >>> other == job
         False
         """
-        changed = {**self.overrides, **{name: text(value) for name, value in {**(values or {}), **more}.items()}}
+        changed = {**self.overrides, **given({**(values or {}), **more})}
         return Job(_flank.load(self._path, self._native.texts, self.name, sorted(changed.items()))[0])
 
     def solve(
@@ -411,7 +411,8 @@ class Job:
     ) -> _results.Deviation:
         """How far measured points lie off a surface, um along the normal, plus is material.
 
-        `measured` is a file, or positions (rows, columns, 3), mm, from root to tip and along the tooth, NaN where nothing was measured.
+        `measured` is a file, or positions (rows, columns, 3), mm, from root to tip and along the tooth, NaN or
+        masked where nothing was measured.
 
         >>> import flank
         >>> job = flank.load("specs/bevel/pinion_19x62.chain")
@@ -466,7 +467,7 @@ class Job:
         98.0
         """
         of = measured._measured if isinstance(measured, _results.Deviation) else measured
-        known, second_known = Measured(of).counts, Measured(None if also is None else also[1]).counts
+        known, second_known = Measured(of).counts, Measured(None if also is None else also[1], "also").counts
         # both have one grid, or each its own
         known = known if also is None or known == second_known else (None, None)
         base: dict[str, Any] = {

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from flank import _display
+from flank._errors import UnknownName
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +49,7 @@ class Parameters(Mapping[str, Parameter]):
     def __getitem__(self, name: str) -> Parameter:
         if name in self._all:
             return self._all[name]
-        raise KeyError(f"there is no parameter `{name}`; there is: {', '.join(self._all)}")
+        raise UnknownName(f"there is no parameter `{name}`; there is: {', '.join(self._all)}")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._all)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flank import _display
-from flank._errors import InputError
+from flank._errors import InputError, UnknownName
 
 if TYPE_CHECKING:
     import pandas as _pandas  # type: ignore[import-untyped,import-not-found,unused-ignore]
@@ -144,7 +144,7 @@ class SurfacePoints:
         if name in self._grid.unknowns:
             return self._grid.unknowns[name][1]
         known = ", ".join([*self._grid.fields, *self._grid.unknowns])
-        raise KeyError(f"{self.name} has no `{name}`; it has: {known}")
+        raise UnknownName(f"{self.name} has no `{name}`; it has: {known}")
 
     def __len__(self) -> int:
         rows, columns = self.counts

@@ -8,6 +8,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from flank import _flank
 from flank._errors import InputError, SpecError, of_dimension
 
@@ -21,7 +23,26 @@ _LIKE = {"length": ("mm", "a length"), "angle": ("deg", "an angle"), "number": (
 _TEXT = re.compile(r"\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*(\S*)\s*")
 
 
-def text(value: Quantity) -> str:
+def encodable(words: str, what: str) -> str:
+    """A text that can be a file: half of a surrogate pair is no character."""
+    if not isinstance(words, str):
+        raise InputError(f"{what} is a text: not {words!r}")
+    half = next((k for k, character in enumerate(words) if "\ud800" <= character <= "\udfff"), None)
+    if half is not None:
+        raise InputError(f"{what} holds {words[half]!r} at index {half}, which is half of a surrogate pair and no character")
+    return words
+
+
+def given(values: Mapping[str, Quantity]) -> dict[str, str]:
+    """Settings with their values in the words of the language."""
+    return {_name(name): text(value, f"`{name}`") for name, value in values.items()}
+
+
+def _name(name: Any) -> str:
+    return encodable(name, "the name of a parameter or setting")
+
+
+def text(value: Quantity, what: str = "a value") -> str:
     """A quantity in the words of the language, which says what is wrong with it.
 
     >>> from flank._quantities import text
@@ -29,24 +50,36 @@ def text(value: Quantity) -> str:
     ('98.1 mm', '98.1 mm', '17')
     """
     if isinstance(value, str):
-        return value
+        return encodable(value, what)
     if isinstance(value, tuple) and len(value) == 2:
-        return f"{_number(value[0])} {value[1]}"
+        return f"{_number(value[0], what)} {encodable(value[1], f'the unit of {what}')}"
     if hasattr(value, "magnitude") and hasattr(value, "units"):
-        return _of_pint(value)
-    return _number(value)
+        return _of_pint(value, what)
+    return _number(value, what)
 
 
-def _number(value: Any) -> str:
-    if isinstance(value, bool) or not hasattr(value, "__float__"):
-        raise InputError(f"a value is a text with a unit, a pair of number and unit, or a number: not {value!r}")
+def _number(value: Any, what: str) -> str:
+    if not is_real(value):
+        raise InputError(f"{what} is a text with a unit, a pair of number and unit, or a number: not {value!r}")
     number = float(value)
     if not math.isfinite(number):
-        raise InputError(f"a value is a finite number: not {value!r}")
+        raise InputError(f"{what} is a finite number: not {value!r}")
     return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
 
 
-def _of_pint(value: Any) -> str:
+def is_real(value: Any) -> bool:
+    """Whether a value is one real number: no text, no array of several, no complex number, no masked one.
+
+    >>> from flank._quantities import is_real
+    >>> import numpy as np
+    >>> [is_real(of) for of in (1, np.float32(2), np.array(3), True, "4", np.zeros(1), 5 + 0j, np.complex128(6), np.ma.masked)]
+    [True, True, True, False, False, False, False, False, False]
+    """
+    is_number = hasattr(value, "__float__") and not isinstance(value, str | bool | np.bool_)
+    return is_number and np.ndim(value) == 0 and not np.iscomplexobj(value) and not np.ma.is_masked(value)
+
+
+def _of_pint(value: Any, what: str) -> str:
     # percent and um/mm are numbers, degrees are not
     root = value.to_root_units()
     powers = dict(root.unit_items())
@@ -56,7 +89,7 @@ def _of_pint(value: Any) -> str:
     if powers == {"meter": 1}:
         # as near as the unit itself leads
         size = value.to("mm").magnitude
-    return f"{_number(size)} {_product(int(powers.get('meter', 0)), int(powers.get('radian', 0)))}".strip()
+    return f"{_number(size, what)} {_product(int(powers.get('meter', 0)), int(powers.get('radian', 0)))}".strip()
 
 
 def _product(of_length: int, of_angle: int) -> str:
@@ -87,7 +120,7 @@ def _unit(name: str) -> tuple[str, float] | None:
 
 
 def _parsed(value: Quantity, what: str, example: str) -> tuple[str, float]:
-    words = text(value)
+    words = text(value, f"`{what}`")
     match = _TEXT.fullmatch(words)
     unit = _unit(match[2]) if match else None
     if match is None or unit is None:
@@ -141,7 +174,7 @@ def amounts(values: Mapping[str, Quantity], what: str) -> list[Amount]:
         kind, size = _parsed(value, f"{what}[{name!r}]", '"5 um", "1 arcmin" or "0.01 %"')
         if size <= 0:
             raise InputError(f"`{what}[{name!r}]` is `{text(value)}`: an amount is above zero")
-        all_of_them.append((name, kind, size))
+        all_of_them.append((_name(name), kind, size))
     return all_of_them
 
 
@@ -152,7 +185,7 @@ def errors(values: Mapping[str, Quantity], what: str) -> list[Amount]:
         kind, size = _parsed(value, f"{what}[{name!r}]", '"0.1 mm" or "2 arcmin"')
         if kind not in ("length", "angle"):
             raise _wrong(what, name, value, "length", "angle")
-        all_of_them.append((name, kind, size))
+        all_of_them.append((_name(name), kind, size))
     return all_of_them
 
 
@@ -188,7 +221,7 @@ def number(value: float | None, what: str, low: float, high: float = math.inf) -
     """A number above one end, and at the most the other; `None` stays."""
     if value is None:
         return None
-    if isinstance(value, bool) or not hasattr(value, "__float__") or not low < float(value) <= high:
+    if not is_real(value) or not low < float(value) <= high:
         end = "" if high == math.inf else f" and at the most {high:g}"
         raise InputError(f"`{what}` is {value!r}: write a number above {low:g}{end}")
     return float(value)

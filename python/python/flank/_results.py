@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from flank import _display
-from flank._errors import InputError, NotSolved
+from flank._errors import InputError, NotSolved, UnknownName
 from flank._points import Floats, SurfacePoints, column_units, joined, needed
 from flank._quantities import Quantity, length, names
 
@@ -70,7 +70,7 @@ class Result:
     def __getitem__(self, key: str) -> Any:
         document = self._read()
         if key not in document:
-            raise KeyError(f"there is no `{key}`; there is: {', '.join(document)}")
+            raise UnknownName(f"there is no `{key}`; there is: {', '.join(document)}")
         return copy.deepcopy(document[key])
 
     def keys(self) -> list[str]:
@@ -177,7 +177,7 @@ class Points(Result):
         if name in self._grids:
             return self._grids[name]
         known = ", ".join(self._grids)
-        raise KeyError(f"there is no surface `{name}`; there is: {known}")
+        raise UnknownName(f"there is no surface `{name}`; there is: {known}")
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._grids)
@@ -359,6 +359,8 @@ class Sensitivity:
 
     def __getitem__(self, place: Any) -> Any:
         if isinstance(place, str):
+            if place not in self.names:
+                raise UnknownName(f"there is no parameter `{place}`; there is: {', '.join(self.names)}")
             return self.values[..., self.names.index(place)]
         return self.values[place]
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from flank import _flank
-from flank._quantities import Quantity, text
+from flank._quantities import Quantity, given
 from flank._results import Path_, put
 
 
@@ -96,6 +96,5 @@ def new(
     ...     flank.load(made["spec"]).parameters["teeth"].value
     25.0
     """
-    given = [(of, text(value)) for of, value in (values or {}).items()]
-    made: dict[str, Any] = json.loads(_flank.new_job(template, os.fspath(folder), name, given).document())
+    made: dict[str, Any] = json.loads(_flank.new_job(template, os.fspath(folder), name, list(given(values or {}).items())).document())
     return made

@@ -15,6 +15,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
+use crate::diagnostics::spelling::closest;
 use crate::limits;
 use crate::model::{Frame, NcWord, Parameter, RangedVariable};
 use crate::syntax::ast::{
@@ -104,6 +105,21 @@ pub(crate) struct BuiltAxis<'g> {
     pub(crate) word: NcWord,
 }
 
+/// Names, and all that stand on them through however many; each pair is a name and what it stands on.
+fn with_descendants<'n>(
+    names: impl Iterator<Item = &'n str>,
+    pairs: impl Iterator<Item = (&'n str, &'n str)>,
+) -> HashSet<&'n str> {
+    let mut children: HashMap<&str, Vec<&str>> = HashMap::new();
+    pairs.for_each(|(child, parent)| children.entry(parent).or_default().push(child));
+    let mut open: Vec<&str> = names.collect();
+    let mut found: HashSet<&str> = open.iter().copied().collect();
+    while let Some(name) = open.pop() {
+        open.extend(children.get(name).into_iter().flatten().filter(|child| found.insert(child)));
+    }
+    found
+}
+
 /// What a machine consists of, its parents' things first; what a variant states again replaces the parent's.
 pub(crate) fn flatten<'a, 'g>(
     context: &mut Context<'g>,
@@ -114,9 +130,15 @@ pub(crate) fn flatten<'a, 'g>(
     while let Some(parent) = &line[line.len() - 1].extends {
         let Some(next) = machines.get(&parent.node) else {
             // what extends it itself would be a circle
-            let others = machines.keys().map(String::as_str);
-            let others = others.filter(|name| line.iter().all(|seen| seen.name.node != *name));
-            context.unknown_item(parent, "machine", others);
+            if context.tells_more() {
+                let pairs = machines
+                    .values()
+                    .filter_map(|machine| Some((machine.name.node.as_str(), machine.extends.as_ref()?.node.as_str())));
+                let child = line[line.len() - 1].name.node.as_str();
+                let own = with_descendants([child].into_iter(), pairs);
+                let others = machines.keys().map(String::as_str).filter(|name| !own.contains(name));
+                context.unknown_item(parent, "machine", others);
+            }
             return None;
         };
         if line.iter().any(|seen| seen.name.node == next.name.node) {
@@ -469,7 +491,7 @@ impl<'a> Flat<'a> {
             if let Some(parent) = frame.parent
                 && !index.contains_key(parent.node.as_str())
             {
-                context.unknown(parent, "frame", index.keys().copied().filter(|name| *name != frame.name.node));
+                self.unknown_parent(context, (frame, parent), &index);
             }
         }
         self.report_circles(context, &index);
@@ -516,6 +538,35 @@ impl<'a> Flat<'a> {
                 context.report(Diagnostic::new(Code::CyclicFrames, place, message).help(help));
             }
             way.into_iter().for_each(|k| state[k] = 2);
+        }
+    }
+
+    /// Reports the parent of a frame that is no frame. Those that hang on the frame itself would make a circle; of the others, those that
+    /// hang on nothing known are meant only where they are called much alike.
+    fn unknown_parent(
+        &self,
+        context: &mut Context<'_>,
+        (frame, parent): (&Hung<'_>, &Name),
+        index: &HashMap<&str, usize>,
+    ) {
+        if !context.tells_more() {
+            return;
+        }
+        let hung = || {
+            self.frames.list.iter().filter_map(|frame| Some((frame.name.node.as_str(), frame.parent?.node.as_str())))
+        };
+        let own = with_descendants([frame.name.node.as_str()].into_iter(), hung());
+        let mut known: Vec<&str> = index.keys().copied().filter(|name| !own.contains(name)).collect();
+        if closest(&parent.node, known.iter().copied()).is_none() {
+            let missing = hung().map(|(_, parent)| parent).filter(|parent| !index.contains_key(parent));
+            let untied = with_descendants(missing, hung());
+            known.retain(|name| !untied.contains(name));
+        }
+        let findings = context.findings();
+        let is_lone = known.is_empty();
+        context.unknown(parent, "frame", known.into_iter());
+        if is_lone {
+            context.help_since(findings, "the first frame hangs on nothing and stands alone, such as `frame bed`");
         }
     }
 

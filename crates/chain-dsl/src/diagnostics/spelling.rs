@@ -4,7 +4,7 @@
 const LONGEST: usize = 64;
 
 /// What is called otherwise in other languages, and its name here.
-const ELSEWHERE: [(&str, &str); 20] = [
+const ELSEWHERE: [(&str, &str); 26] = [
     ("sinus", "sin"),
     ("sine", "sin"),
     ("cosinus", "cos"),
@@ -25,6 +25,12 @@ const ELSEWHERE: [(&str, &str); 20] = [
     ("micron", "um"),
     ("microns", "um"),
     ("turns", "rev"),
+    ("π", "pi"),
+    ("int", "count"),
+    ("integer", "count"),
+    ("float", "number"),
+    ("double", "number"),
+    ("real", "number"),
 ];
 
 /// The candidate that a misspelt word most likely stands for: the first of the nearest, with no more than one mistake (a letter too many,

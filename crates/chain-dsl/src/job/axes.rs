@@ -28,24 +28,25 @@ impl<'g> Builder<'_, 'g> {
         let axes = (["axis", "axes"], drive.targets.iter().map(|target| target.span).collect());
         let laws = (["law", "laws"], drive.values.iter().map(|value| value.span).collect());
         let is_broken = drive.values.iter().any(|value| value.kind == ExpressionKind::Error);
-        if !is_broken {
-            are_even(context, axes, laws, "write as many laws as axes: `drive m.X, m.Z = 20 mm, feed`");
-        }
+        let help = "write as many laws as axes: `drive m.X, m.Z = 20 mm, feed`";
+        // of an uneven list it is not known which law is meant for which axis
+        let is_known = !is_broken && are_even(context, axes, laws, help);
         let whole = match (drive.targets.as_slice(), drive.values.as_slice()) {
             ([target], [value]) => Some(target.span.to(value.span)),
             _ => None,
         };
         for (k, target) in drive.targets.iter().enumerate() {
-            self.drive_axis(context, target, (drive.values.get(k), whole));
+            self.drive_axis(context, target, (drive.values.get(k), is_known), whole);
         }
     }
 
-    /// Gives an axis its law, which may be missing (and that is reported); with what is said of it, where of it alone.
+    /// Gives an axis its law, which may be missing or another's (and that is reported); with what is said of it, where of it alone.
     fn drive_axis(
         &mut self,
         context: &mut Context<'g>,
         target: &ast::Path,
-        (law, whole): (Option<&ast::Expression>, Option<Span>),
+        (law, is_known): (Option<&ast::Expression>, bool),
+        whole: Option<Span>,
     ) {
         let Some((machine, member)) = self.machine_member(context, target, "an axis") else {
             (0..self.machines.len()).for_each(|machine| self.lose_law(machine));
@@ -74,6 +75,7 @@ impl<'g> Builder<'_, 'g> {
         }
         let value =
             axis.dimension.zip(law).and_then(|(dimension, law)| context.scalar(law, &self.scope, dimension, &what));
+        let value = value.filter(|_| is_known);
         let key = (machine, member.node.clone());
         if let Some(first) = self.drives.get(&key) {
             let message = format!("{what} is driven twice");

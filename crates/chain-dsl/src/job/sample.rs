@@ -6,6 +6,7 @@ use crate::diagnostics::Diagnostic;
 use crate::diagnostics::codes::Code;
 use crate::diagnostics::rewriting::Rewriting;
 use crate::diagnostics::source::{Name, Span};
+use crate::diagnostics::spelling::closest;
 use crate::limits;
 use crate::model::{Coordinate, GeneratedSurface, PointRequirement, Sample, SampleEnds, SampleGrid};
 use crate::syntax::ast::{self, Expression, ExpressionKind, SampleEntry, SampleValues};
@@ -100,8 +101,8 @@ fn grid<'g>(
         context.report(Diagnostic::new(Code::SampleShape, path.span, message).help(help));
         return None;
     };
-    let row_coordinate = coordinate(context, (&rows.key, rows.definition.as_ref()), surface, scope);
-    let column_coordinate = coordinate(context, (&columns.key, columns.definition.as_ref()), surface, scope);
+    let row_coordinate = asked(context, (rows, columns), surface, scope);
+    let column_coordinate = asked(context, (columns, rows), surface, scope);
     let (row_coordinate, column_coordinate) = (row_coordinate?, column_coordinate?);
     let row_values = values(context, rows, scope, row_coordinate.dimension);
     let column_values = values(context, columns, scope, column_coordinate.dimension);
@@ -271,6 +272,36 @@ pub(super) fn follows_from_points<'g>(
     None
 }
 
+/// The coordinate of an entry. For one that there is not, another can stand if the second entry has not named it and the values are of its
+/// dimension.
+fn asked<'g>(
+    context: &mut Context<'g>,
+    (entry, other): (&SampleEntry, &SampleEntry),
+    surface: &GeneratedSurface<'g>,
+    scope: &Scope<'g>,
+) -> Option<Coordinate<'g>> {
+    let key = &entry.key;
+    if entry.definition.is_some() || key.node.is_empty() || surface.coordinate(&key.node).is_some() {
+        return coordinate(context, (key, entry.definition.as_ref()), surface, scope);
+    }
+    let mut free = surface.coordinates();
+    free.retain(|known| known.name != other.key.node);
+    if closest(&key.node, free.iter().map(|known| known.name.as_str())).is_none() {
+        let first = match &entry.values {
+            SampleValues::Range(range, _) => &range.low,
+            SampleValues::Value(value) => value,
+        };
+        let value = context.evaluate(first, scope);
+        let first = if let Value::Vector(parts) = &value { parts.first() } else { Some(&value) };
+        let dimension = first.and_then(Value::as_scalar).map(|(_, dimension)| dimension);
+        // a number may lack its unit
+        let dimension = dimension.filter(|dimension| *dimension != Dimension::NUMBER);
+        free.retain(|known| dimension.is_none_or(|dimension| known.dimension == dimension));
+    }
+    context.unknown(key, "coordinate", free.iter().map(|known| known.name.as_str()));
+    None
+}
+
 pub(super) fn coordinate<'g>(
     context: &mut Context<'g>,
     (key, definition): (&Name, Option<&Expression>),
@@ -321,7 +352,8 @@ fn values<'g>(
             let count = context.require_constant(count?, by.span, "the number of points")?;
             if count.fract() != 0.0 || count < 1.0 {
                 let message = format!("the number of points must be a whole number from 1, not {count}");
-                context.report(Diagnostic::new(Code::SampleShape, by.span, message));
+                let help = "it counts the points, both ends among them, as in `by 5`";
+                context.report(Diagnostic::new(Code::SampleShape, by.span, message).help(help));
                 return None;
             }
             if count > limits::SAMPLE_POINTS.most as f64 {

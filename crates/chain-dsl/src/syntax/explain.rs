@@ -58,12 +58,16 @@ impl<'s> Mistake<'s> {
             Self::by_of_one_value,
             Self::not_a_unit,
             Self::not_a_name,
+            Self::hyphen_in_name,
+            Self::positional,
             Self::habit,
             Self::stray_bracket,
             Self::frame_in_its_place,
             Self::no_tolerance,
             Self::pose_without_place,
             Self::expect_with_colon,
+            Self::no_range,
+            Self::no_operator,
         ];
         special.iter().find_map(|explain| explain(self)).unwrap_or_else(|| self.unexpected())
     }
@@ -181,6 +185,38 @@ impl<'s> Mistake<'s> {
                 .help("leave it out, or write a range: `-5 mm .. 5 mm by 3`")
                 .cure("leave `by` out", gap, "")
         })
+    }
+
+    /// `motion roll : angle`
+    fn no_range(&self) -> Option<Diagnostic> {
+        let is_moving = matches!(self.scan.say(self.range.start), "motion" | "unknown" | "surface");
+        let lacks = is_moving && self.expected.contains(&Rule::kw_in) && words::DIMENSIONS.contains(&self.before());
+        let range = match self.before() {
+            "length" => "in 0 mm .. 10 mm",
+            "angle" => "in -40 deg .. 40 deg",
+            _ => "in 0 .. 1",
+        };
+        let report = lacks.then(|| self.unexpected()).filter(|report| report.help.is_none())?;
+        Some(report.help(format!("say between which values it lies, as in `{range}`")))
+    }
+
+    /// `drive m.Y = radius roll`
+    fn no_operator(&self) -> Option<Diagnostic> {
+        let is_value = self.scan.is_name(self.found) || self.kind() == Some(Kind::Number);
+        let follows = self.scan.is_name(self.found.wrapping_sub(1))
+            || self.kind_before() == Some(Kind::Number)
+            || words::UNITS.contains(&self.before())
+            || matches!(self.before(), ")" | "]");
+        // a name before a colon begins the next entry of a list
+        let is_entry = self.scan.say(self.found + 1) == ":";
+        let others = [Rule::dots, Rule::kw_then, Rule::kw_else];
+        let wants = self.expected.contains(&Rule::infix) && !others.iter().any(|rule| self.expected.contains(rule));
+        let is_missing = is_value && follows && wants && !is_entry && !self.ends() && !self.leads();
+        let report = is_missing.then(|| self.unexpected());
+        let report = report.filter(|report| report.help.is_none() && !report.message.contains("operator"))?;
+        let (before, found) = (self.scan.quote(self.found - 1), self.scan.quote(self.found));
+        let help = "an operator such as `*` belongs between";
+        Some(report.help(format!("{help} {before} and {found}, or a comma if they are two values")))
     }
 
     fn closest(&self, candidates: impl IntoIterator<Item = &'static str>) -> Option<&'static str> {

@@ -10,7 +10,7 @@ use super::ast::{
     Sample, SampleEntry, SampleValues, Sampled, Segment, Side, Solid, SurfaceParameter, ToolStatement, Type,
 };
 use super::build::{Head, SurfaceParts};
-use super::scan::Scan;
+use super::scan::{Kind, Scan};
 use super::words;
 
 /// A machine's statement; nothing if it has no name.
@@ -107,7 +107,8 @@ pub(super) fn segment(scan: &Scan, range: Range<usize>) -> Segment {
 /// What stands before the block of a machine, tool, profile or job.
 pub(super) fn head(scan: &Scan, first: usize) -> Head {
     let piece = Piece { scan, range: first..first + 1 };
-    let extends = scan.is_name(first + 3) && scan.say(first + 2) != "{";
+    // behind a hyphen stands a part of the name
+    let extends = scan.is_name(first + 3) && !matches!(scan.say(first + 2), "{" | "-");
     let parent = match extends {
         true => Some(piece.name(first + 3)),
         // of which one is not known
@@ -178,9 +179,11 @@ impl Piece<'_> {
         Spanned { node: String::new(), span: self.scan.place(self.range.start) }
     }
 
-    /// The name after the first word; or the first word, if the two are swapped.
+    /// The name after the first word, also behind a strange character; or the first word, if the two are swapped.
     fn defined(&self) -> Option<Name> {
-        let mut places = [self.range.start + 1, self.range.start].into_iter();
+        let first = self.range.start;
+        let is_strange = self.scan.kind(first + 1) == Some(Kind::Strange);
+        let mut places = [if is_strange { first + 2 } else { first + 1 }, first].into_iter();
         places.find(|&index| self.scan.is_name(index)).map(|index| self.name(index))
     }
 

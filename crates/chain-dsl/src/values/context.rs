@@ -516,13 +516,17 @@ impl<'g> Context<'g> {
 
     /// Reports an unknown name with the nearest known one: once for each item, however often the item uses it.
     pub(crate) fn unknown<'a>(&mut self, name: &Name, kind: &str, known: impl Iterator<Item = &'a str>) {
+        self.unknown_with(name, kind, |diagnostic| suggesting(diagnostic, name, known));
+    }
+
+    fn unknown_with(&mut self, name: &Name, kind: &str, way_out: impl FnOnce(Diagnostic) -> Diagnostic) {
         // a missing name has been reported, and so has what could not be made
         let is_reported = name.node.is_empty() || self.is_unmade(&name.node);
         if is_reported || !self.tells_more() || !self.unknown.insert(name.node.clone()) {
             return;
         }
         let message = format!("there is no {kind} `{}`", name.node);
-        self.report(suggesting(Diagnostic::new(Code::UnknownName, name.span, message), name, known));
+        self.report(way_out(Diagnostic::new(Code::UnknownName, name.span, message)));
     }
 
     /// Whether a name, or what it is a member of, is declared and could not be made, which has been reported.
@@ -536,7 +540,9 @@ impl<'g> Context<'g> {
         if self.is_unmade(first) {
             return;
         }
-        let Some(place) = self.later.get(first).copied() else { return self.unknown(name, "value", known) };
+        let Some(place) = self.later.get(first).copied() else {
+            return self.unknown_with(name, "value", |diagnostic| suggesting_value(diagnostic, name, known));
+        };
         let message = format!("`{}` has no value yet", name.node);
         let note = format!("`{first}` is declared here, and statements know only what stands above them");
         self.report(Diagnostic::new(Code::UnknownName, name.span, message).note(place, note));
@@ -624,6 +630,20 @@ pub(crate) fn suggesting<'a>(
     }
 }
 
+/// The same about a value, for which another one far off can stand only by chance: these are told, and none of them is written.
+fn suggesting_value<'a>(diagnostic: Diagnostic, name: &Name, known: impl Iterator<Item = &'a str>) -> Diagnostic {
+    if matches!(name.node.as_str(), "tau" | "TAU" | "Tau" | "τ") {
+        let help = "a whole turn is `2 * pi`";
+        return diagnostic.help(help).cure("write `2 * pi`", name.span, "(2 * pi)");
+    }
+    let is_pi = name.node.eq_ignore_ascii_case("pi") || name.node == "π";
+    let known: Vec<&str> = known.chain(is_pi.then_some("pi")).collect();
+    if closest(&name.node, known.iter().copied()).is_some() {
+        return suggesting(diagnostic, name, known.into_iter());
+    }
+    Diagnostic { help: listed(known).map(|list| format!("values here: {list}")), ..diagnostic }
+}
+
 /// The same about a word somewhere in the place of the finding.
 pub(crate) fn suggesting_word<'a>(
     diagnostic: Diagnostic,
@@ -639,14 +659,22 @@ pub(crate) fn suggesting_word<'a>(
 
 /// The nearest of the known names, as a sentence.
 pub(crate) fn did_you_mean<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
-    let mut known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
+    let known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
+    // of those alike, the first
+    let mut in_order = known.clone();
+    in_order.sort_unstable();
+    match closest(name, in_order) {
+        Some(meant) => Some(format!("did you mean `{meant}`?")),
+        None => listed(known).map(|list| format!("there is: {list}")),
+    }
+}
+
+/// Names in order, if there are some and not too many of them.
+fn listed(mut known: Vec<&str>) -> Option<String> {
+    known.retain(|name| !name.is_empty());
     known.sort_unstable();
     known.dedup();
-    match closest(name, known.iter().copied()) {
-        Some(meant) => Some(format!("did you mean `{meant}`?")),
-        None if !known.is_empty() && known.len() <= READABLE => Some(format!("there is: {}", quoted(&known))),
-        None => None,
-    }
+    (!known.is_empty() && known.len() <= READABLE).then(|| quoted(&known))
 }
 
 /// Names in a list.

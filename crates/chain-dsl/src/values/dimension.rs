@@ -127,10 +127,10 @@ pub(crate) fn convert(value: f64, name: &str, exponent: i32) -> Option<f64> {
 /// An inside value as people write it: `3 mm`, `20 deg`, `5`.
 pub(crate) fn shown(value: f64, dimension: Dimension) -> String {
     match dimension {
-        Dimension::ANGLE => format!("{} deg", without_noise(value.to_degrees())),
-        Dimension::LENGTH => format!("{} mm", without_noise(value)),
-        Dimension { length: 1, angle: -1 } => format!("{} mm/rad", without_noise(value)),
-        _ => without_noise(value).to_string(),
+        Dimension::ANGLE => format!("{} deg", digits(value.to_degrees())),
+        Dimension::LENGTH => format!("{} mm", digits(value)),
+        Dimension { length: 1, angle: -1 } => format!("{} mm/rad", digits(value)),
+        _ => digits(value),
     }
 }
 
@@ -166,9 +166,15 @@ pub(crate) fn shown_like(value: f64, dimension: Dimension, written: &Expression)
 /// An inside value in a unit, if there is one.
 pub(crate) fn shown_in(value: f64, dimension: Dimension, unit: Option<&WrittenUnit>) -> String {
     match unit {
-        Some(WrittenUnit { name, size }) => format!("{} {name}", without_noise(value / size)),
+        Some(WrittenUnit { name, size }) => format!("{} {name}", digits(value / size)),
         None => shown(value, dimension),
     }
+}
+
+/// A value in digits: with an exponent where most of them would only say how large it is.
+fn digits(value: f64) -> String {
+    let value = without_noise(value);
+    if value.is_finite() && value.abs() >= 1e16 { format!("{value:e}") } else { value.to_string() }
 }
 
 /// The value with 15 digits if that is as good as itself: within two roundings, such as a conversion's. So 0.38 · 3 is 1.14,

@@ -144,3 +144,20 @@ fn a_slip_in_a_path_is_mended_by_the_nearest_file() {
         assert_eq!(meant_by(used), None, "{used}");
     }
 }
+
+/// A value far off would be right by chance; a unit or a parent that cannot stand there is wrong for sure.
+#[test]
+fn what_cannot_be_meant_is_not_offered() {
+    let written = |text: &str| -> Vec<String> {
+        let finding = found(text).into_iter().next().expect("a finding");
+        finding.cures.into_iter().map(|cure| cure.replacement).collect()
+    };
+    assert!(written("tool t { param radius : length let a = zeta * radius }").is_empty());
+    assert_eq!(written("tool t { param radius : length = 4 m }"), ["mm", "um", "µm", "cm", "inch"]);
+    assert_eq!(written("tool t { param tilt : angle in 0 deg .. 9 gon }"), ["deg", "rad", "arcmin", "arcsec", "rev"]);
+    let machines = "machine a extends none { } machine b extends a { } machine c { frame bed }";
+    assert_eq!(written(machines), ["c"]);
+    let frames =
+        "machine m { frame base frame a in none = mirror_x() frame b in a = mirror_x() frame c in none = mirror_x() }";
+    assert_eq!(written(frames), ["base"]);
+}

@@ -4,7 +4,7 @@ use flank_chain_dsl::{Diagnostic, compile_text};
 use flank_expr::Graph;
 
 /// A line of a function, wrong and mended.
-const MENDED: [(&str, &str); 23] = [
+const MENDED: [(&str, &str); 27] = [
     ("fn f(x: angle) = sin (x)", "fn f(x: angle) = sin(x)"),
     ("fn f(x: number) = 5. * x", "fn f(x: number) = 5.0 * x"),
     ("fn f(x: number) = .5 * x", "fn f(x: number) = 0.5 * x"),
@@ -24,6 +24,10 @@ const MENDED: [(&str, &str); 23] = [
     ("fn f(x: length) = x + 2 mmm", "fn f(x: length) = x + 2 mm"),
     ("fn f(x: angle) = sinn(x)", "fn f(x: angle) = sin(x)"),
     ("fn f(x: length) = x + 2", "fn f(x: length) = x + 2 mm"),
+    ("fn f(x: number) = PI * x", "fn f(x: number) = pi * x"),
+    ("fn f(x: number) = π * x", "fn f(x: number) = pi * x"),
+    ("fn f(x: number) = x / tau", "fn f(x: number) = x / (2 * pi)"),
+    ("fn f(x: int) = x", "fn f(x: count) = x"),
     ("fn f(x: angle) = x + 20°", "fn f(x: angle) = x + 20 deg"),
     ("fn f(x: angle) = x + 20 ″", "fn f(x: angle) = x + 20 arcsec"),
     ("fn f(x: number) = x + 20−x", "fn f(x: number) = x + 20-x"),

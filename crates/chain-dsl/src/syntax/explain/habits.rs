@@ -89,6 +89,17 @@ impl Mistake<'_> {
         let statement = self.scan.say(self.range.start);
         let help = match (self.before(), self.say()) {
             ("*", "*") if self.touches(self.found) => "a power is written `a ^ b`",
+            (_, ":") if wants(Rule::equals) && self.scan.say(self.found + 1) == "=" && self.touches(self.found + 1) => {
+                "a value is given with `=`"
+            }
+            (_, "=")
+                if wants(Rule::colon)
+                    && matches!(statement, "machine" | "tool" | "job")
+                    && self.scan.is_name(self.found - 1) =>
+            {
+                "a setting gets its value with `:`"
+            }
+            (_, "." | "to") if wants(Rule::dots) => "a range is written `a .. b`",
             (_, "=") if wants(Rule::close_paren) && self.scan.is_name(self.found - 1) => {
                 "an argument gets its value with `:`"
             }
@@ -114,8 +125,12 @@ impl Mistake<'_> {
                 "transforms stand side by side, without a sign between them"
             }
             ("/", "*") if self.touches(self.found) => block_comment(self.scan, self.found - 1)?,
-            (_, "angle" | "rotation") if wants(Rule::axis_kind) => "an axis that turns is `rotary`",
-            (_, "length" | "translation") if wants(Rule::axis_kind) => "an axis that slides is `linear`",
+            (_, "angle" | "rotation" | "rotational" | "revolute") if wants(Rule::axis_kind) => {
+                "an axis that turns is `rotary`"
+            }
+            (_, "length" | "translation" | "translational" | "prismatic") if wants(Rule::axis_kind) => {
+                "an axis that slides is `linear`"
+            }
             (_, ",") if wants(Rule::EOI) => "a statement ends without a sign",
             _ => block_comment(self.scan, self.found)?,
         };
@@ -133,14 +148,20 @@ impl Mistake<'_> {
         let after = |sign: &str| (self.found..self.range.end).find(|at| self.scan.say(*at) == sign);
         let replaced = match (self.before(), self.say(), help) {
             ("*", "*", _) => ("write `^`", self.scan.extent(self.found - 1..self.found + 1), "^"),
-            (_, "=", "an argument gets its value with `:`") => ("write `:`", self.place(), ":"),
+            (_, ":", "a value is given with `=`") => ("write `=`", self.scan.extent(self.found..self.found + 2), "="),
+            (_, "." | "to", "a range is written `a .. b`") => ("write `..`", self.place(), ".."),
+            (_, "=", "an argument gets its value with `:`" | "a setting gets its value with `:`") => {
+                ("write `:`", self.place(), ":")
+            }
             (_, "=", _) if self.scan.say(self.range.start) == "error" => {
                 ("leave the value out", self.scan.extent(self.found..self.range.end), "")
             }
             (_, "=", "values are compared with `==`") => ("write `==`", self.place(), "=="),
             (_, "==", _) => ("write `=`", self.place(), "="),
-            (_, "angle" | "rotation", _) => ("write `rotary`", self.place(), "rotary"),
-            (_, "length" | "translation", _) => ("write `linear`", self.place(), "linear"),
+            (_, "angle" | "rotation" | "rotational" | "revolute", _) => ("write `rotary`", self.place(), "rotary"),
+            (_, "length" | "translation" | "translational" | "prismatic", _) => {
+                ("write `linear`", self.place(), "linear")
+            }
             (")", "*", _) => ("leave `*` out", self.place(), ""),
             (_, ",", _) => ("leave `,` out", self.place(), ""),
             (_, ".", _) if self.scan.is_name(self.found + 1) => {

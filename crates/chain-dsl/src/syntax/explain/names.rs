@@ -11,6 +11,50 @@ use super::super::words::{self, Reserved};
 use super::Mistake;
 
 impl<'s> Mistake<'s> {
+    /// `job first-gear {`
+    pub(super) fn hyphen_in_name(&self) -> Option<Diagnostic> {
+        let first = self.range.start + 1;
+        let is_part = |index: usize| {
+            self.touches(index)
+                && (self.scan.say(index) == "-" || matches!(self.scan.kind(index), Some(Kind::Word | Kind::Number)))
+        };
+        let defines = words::defines(self.scan.say(self.range.start)) && self.scan.is_name(first);
+        let is_hyphen = self.found == first + 1 && self.say() == "-" && is_part(self.found) && is_part(self.found + 1);
+        (defines && is_hyphen).then(|| {
+            let end = (self.found..self.range.end).find(|&index| !is_part(index)).unwrap_or(self.range.end);
+            let whole = self.scan.extent(first..end);
+            let name = self.scan.text[whole.start as usize..whole.end as usize].replace('-', "_");
+            let report = self.here("a name has no `-`");
+            report.writing(whole, &name)
+        })
+    }
+
+    /// `rack(module)`
+    pub(super) fn positional(&self) -> Option<Diagnostic> {
+        let before = self.found.checked_sub(1).filter(|&index| self.scan.is_name(index))?;
+        let of_settings = matches!(self.scan.say(self.range.start), "machine" | "tool" | "job");
+        let is_whole = of_settings && matches!(self.say(), ")" | ",") && self.expected.contains(&Rule::colon);
+        let is_first = is_whole && matches!(self.scan.say(before.wrapping_sub(1)), "(" | ",");
+        let name = self.scan.say(before);
+        is_first.then(|| self.unexpected().writing(self.scan.place(before), &format!("{name}: {name}")))
+    }
+
+    /// The units of the dimension that is declared before a number, where nothing but the number can be of it; all of them elsewhere.
+    fn units_that_fit(&self) -> Vec<&'static str> {
+        let is_product = |index: usize| matches!(self.scan.say(index), "*" | "/" | "^");
+        let begins = |index: &usize| matches!(self.scan.say(*index), ":" | "(" | "[" | "," | "{");
+        let is_alone = !(self.found.saturating_sub(2)..self.found).chain([self.found + 1]).any(is_product);
+        let colon = (self.range.start..self.found).rev().find(begins).filter(|&index| self.scan.say(index) == ":");
+        let declared = colon.filter(|&index| is_alone && !is_product(index + 2)).map(|index| self.scan.say(index + 1));
+        let wanted = match declared {
+            Some("length" | "linear") => Some("length"),
+            Some("angle" | "rotary") => Some("angle"),
+            _ => None,
+        };
+        let units = words::UNITS.iter().copied();
+        units.filter(|unit| wanted.is_none_or(|wanted| dimension_of(unit) == wanted)).collect()
+    }
+
     /// `20 mmm`
     pub(super) fn not_a_unit(&self) -> Option<Diagnostic> {
         let unit = self.kind_before() == Some(Kind::Number)
@@ -23,16 +67,17 @@ impl<'s> Mistake<'s> {
         if !unit || like.is_none() && self.misspelt(&expected::relevant(self.expected.clone())).is_some() {
             return None;
         }
+        let fitting = self.units_that_fit();
         let help = match like {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => format!("the units are {}", words::UNITS.join(", ")),
+            None => format!("the units are {}", fitting.join(", ")),
         };
         let diagnostic = self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help);
         Some(match like {
             Some(meant) => diagnostic.cure(format!("write `{meant}`"), self.place(), meant),
-            None => words::UNITS
-                .iter()
-                .fold(diagnostic, |diagnostic, unit| diagnostic.cure(format!("write `{unit}`"), self.place(), *unit)),
+            None => fitting
+                .into_iter()
+                .fold(diagnostic, |diagnostic, unit| diagnostic.cure(format!("write `{unit}`"), self.place(), unit)),
         })
     }
 
