@@ -97,29 +97,32 @@ pub fn trim(
     let columns_down = (0..columns).map(|j| (0..rows).map(|i| i * columns + j).collect());
     let rows_across = (0..rows).map(|i| (0..columns).map(|j| i * columns + j).collect());
     for (lines, coordinate) in [(columns_down.collect::<Vec<Vec<usize>>>(), 0), (rows_across.collect(), 1)] {
-        let mut before: Vec<Vec<Vec<f64>>> = vec![Vec::new(); intersections.len()];
-        for indices in &lines {
-            let line = Line::through(indices, targets, coordinate);
-            let near: Vec<&SurfacePoint> =
-                indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved).collect();
-            let mut all: Vec<Met> = Vec::new();
-            for (place, (intersection, number)) in intersections.iter().enumerate() {
-                let starts = [before[place].clone(), intersection.crossings(&near)].concat();
-                let mut found = intersection.on_line(line, &starts, &near);
-                if !found.is_empty() {
-                    before[place] = found.iter().map(Meeting::unknowns).collect();
-                }
+        let on_line = |indices: &Vec<usize>| Line::through(indices, targets, coordinate);
+        let through: Vec<(Line, Vec<&SurfacePoint>)> = lines
+            .iter()
+            .map(|indices| {
+                let own = indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved);
+                (on_line(indices), own.collect())
+            })
+            .collect();
+        let mut all: Vec<Vec<Met>> = vec![Vec::new(); lines.len()];
+        for (place, (intersection, number)) in intersections.iter().enumerate() {
+            for (of, mut found) in meet(intersection, &through).into_iter().enumerate() {
                 if let Some(tool) = tool {
                     keep_left(&mut found, tool);
                 }
-                let on_grid = found.iter().filter(|meeting| line.is_on_grid(meeting.along, indices, targets));
+                let on_grid =
+                    found.iter().filter(|meeting| through[of].0.is_on_grid(meeting.along, &lines[of], targets));
                 meetings[place][coordinate].extend(on_grid.cloned());
-                all.extend(found.into_iter().map(|meeting| (meeting, *number)));
+                all[of].extend(found.into_iter().map(|meeting| (meeting, *number)));
             }
+        }
+        for ((indices, (line, _)), mut all) in lines.iter().zip(&through).zip(all) {
             all.sort_by(|a, b| a.0.along.total_cmp(&b.0.along));
-            decide(&mut known, &mut joined, indices, targets, line, &all);
+            decide(&mut known, &mut joined, indices, targets, *line, &all);
         }
     }
+    contradict(&mut known, &joined);
     spread(&mut known, &joined);
     for (point, known) in points.iter_mut().zip(known) {
         if let Some(number) = known.goes.filter(|_| point.outcome == Outcome::Solved) {
@@ -127,6 +130,30 @@ pub fn trim(
         }
     }
     meetings
+}
+
+/// The meetings on lines beside each other, each with the points on it: looked for from those on the line before, and once more where the line
+/// behind has more of them.
+fn meet(intersection: &Intersection, lines: &[(Line, Vec<&SurfacePoint>)]) -> Vec<Vec<Meeting>> {
+    let unknowns = |found: &[Meeting]| found.iter().map(Meeting::unknowns).collect::<Vec<Vec<f64>>>();
+    let mut all: Vec<Vec<Meeting>> = Vec::with_capacity(lines.len());
+    let mut before = Vec::new();
+    for (line, near) in lines {
+        let starts = [before.clone(), intersection.crossings(near)].concat();
+        let found = intersection.on_line(*line, &starts, near);
+        if !found.is_empty() {
+            before = unknowns(&found);
+        }
+        all.push(found);
+    }
+    for at in (1..lines.len()).rev() {
+        let [own, behind] = &mut all[at - 1..=at] else { continue };
+        if behind.len() > own.len() {
+            let (line, near) = &lines[at - 1];
+            *own = intersection.on_line(*line, &[unknowns(own), unknowns(behind)].concat(), near);
+        }
+    }
+    all
 }
 
 /// Leaves out the meetings with what the tool of the second surface cuts away of it.
@@ -190,6 +217,20 @@ fn decide(
         let (a, b) = (place(pair[0]), place(pair[1]));
         if !found.iter().any(|(meeting, _)| (a.min(b) - ON_EDGE..=a.max(b) + ON_EDGE).contains(&meeting.along)) {
             joined.push([pair[0], pair[1]]);
+        }
+    }
+}
+
+/// Of two points that no meeting parts and that lines tell apart, neither is known: a meeting was missed.
+fn contradict(known: &mut [Known], joined: &[[usize; 2]]) {
+    let before = known.to_vec();
+    for &[a, b] in joined {
+        for [stays, goes] in [[a, b], [b, a]] {
+            let by = before[goes].goes.filter(|_| !before[goes].stays);
+            if before[stays].stays && before[stays].goes.is_none() && by.is_some() {
+                known[stays].goes = by;
+                known[goes].stays = true;
+            }
         }
     }
 }
