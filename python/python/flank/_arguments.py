@@ -7,7 +7,7 @@ import re
 import tempfile
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -106,7 +106,7 @@ def positions(of: npt.ArrayLike, what: str) -> Floats:
     """Measured positions (rows, columns, 3), mm; NaN where nothing was measured, which a mask says as well."""
     try:
         # of an array in whatever coat, also of a list of rows with masks of their own
-        given = np.ma.array(of, copy=False)
+        given: np.ma.MaskedArray[Any, np.dtype[Any]] = np.ma.array(of, copy=False)
         if np.iscomplexobj(given):
             raise InputError(f"`{what}` is complex: measured positions are real numbers, mm")
         xyz: Floats = np.ma.filled(given.astype(float), np.nan)
@@ -122,8 +122,12 @@ class Measured:
 
     def __init__(self, of: Path_ | npt.ArrayLike | None, what: str = "measured") -> None:
         self._what = what
-        self._path = os.fspath(of) if isinstance(of, str | os.PathLike) else None
-        self._xyz = None if of is None or self._path is not None else positions(of, what)
+        self._path: str | None = None
+        self._xyz: Floats | None = None
+        if isinstance(of, str | os.PathLike):
+            self._path = os.fspath(of)
+        elif of is not None:
+            self._xyz = positions(of, what)
         self._folder: tempfile.TemporaryDirectory[str] | None = None
 
     @property
