@@ -64,6 +64,22 @@ struct Row {
     at: [f64; 2],
 }
 
+/// The named columns of all points of a job.
+fn points<const N: usize>(folder: &Path, (job, spec): (&str, &str), columns: [&str; N]) -> Vec<[String; N]> {
+    let (file, out) = (written(folder, &format!("{job}.chain"), spec), folder.to_str().expect("a plain path"));
+    let run = flank(&["solve", &file, "--no-picture", "--out", out]);
+    let table = std::fs::read_to_string(folder.join(format!("{job}.csv")));
+    let table = table.unwrap_or_else(|_| panic!("{}", text(&run.stderr)));
+    let mut rows = table.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect::<Vec<_>>());
+    let names = rows.next().expect("a head");
+    let columns = columns.map(|name| names.iter().position(|title| *title == name).expect("a column"));
+    rows.map(|row| columns.map(|column| row[column].to_string())).collect()
+}
+
+fn number(text: &str) -> f64 {
+    text.parse().expect("a number")
+}
+
 impl Walls {
     fn solved(&self, folder: &Path, side: &str, sample: &str) -> Vec<Row> {
         let [low, high] = self.turns;
@@ -71,25 +87,12 @@ impl Walls {
         let spec =
             spec.replace("SWING2", &format!("{} mm", self.swing2)).replace("SWING", &format!("{} mm", self.swing));
         let spec = spec.replace("WAVES2", &self.waves2.to_string()).replace("SAMPLE", sample);
-        let (file, out) = (written(folder, "walls.chain", &spec), folder.to_str().expect("a plain path"));
-        let run = flank(&["solve", &file, "--no-picture", "--out", out]);
-        let table =
-            std::fs::read_to_string(folder.join("walls.csv")).unwrap_or_else(|_| panic!("{}", text(&run.stderr)));
-        let mut rows = table.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect::<Vec<_>>());
-        let names = rows.next().expect("a head");
-        let column = |name: &str| names.iter().position(|title| *title == name).expect("a column");
-        let [surface, status, turn, turn2, x, y] = ["surface", "status", "turn", "turn2", "x", "y"].map(column);
-        let row = |row: Vec<&str>| {
-            let number = |column: usize| row[column].parse().expect("a number");
-            let turn = if row[turn].is_empty() { turn2 } else { turn };
-            Row {
-                surface: row[surface].to_string(),
-                status: row[status].to_string(),
-                turn: number(turn),
-                at: [number(x), number(y)],
-            }
+        let columns = ["surface", "status", "turn", "turn2", "x", "y"];
+        let row = |[surface, status, turn, turn2, x, y]: [String; 6]| {
+            let turn = number(if turn.is_empty() { &turn2 } else { &turn });
+            Row { surface, status, turn, at: [number(&x), number(&y)] }
         };
-        rows.map(row).collect()
+        points(folder, ("walls", &spec), columns).into_iter().map(row).collect()
     }
 
     /// How far a point lies off the pin that does not make it, on all of its way: less than zero where that takes it away. The step of
@@ -244,16 +247,11 @@ job rolled {
 fn a_crossing_that_one_line_has_the_next_one_has() {
     let folder = folder("rolled");
     for count in [2, 3, 5] {
-        let spec = written(&folder, "rolled.chain", &ROLLED.replace("COUNT", &count.to_string()));
-        flank(&["solve", &spec, "--no-picture", "--out", folder.to_str().expect("a plain path")]);
-        let table = std::fs::read_to_string(folder.join("rolled.csv")).expect("written");
-        let mut rows = table.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect::<Vec<_>>());
-        let names = rows.next().expect("a head");
-        let column = |name: &str| names.iter().position(|title| *title == name).expect("a column");
-        let [surface, status, x, y] = ["surface", "status", "x", "y"].map(column);
+        let spec = ROLLED.replace("COUNT", &count.to_string());
+        let wall = points(&folder, ("rolled", &spec), ["surface", "status", "x", "y"]);
         let mut trimmed = 0;
-        for row in rows.filter(|row| row[surface] == "wall") {
-            let [x, y] = [x, y].map(|column| row[column].parse::<f64>().expect("a number"));
+        for [_, status, x, y] in wall.iter().filter(|[surface, ..]| surface == "wall") {
+            let [x, y] = [number(x), number(y)];
             // a step of 1.7e-5 rad of 34 mm and 33 mm/rad: off by less than 1e-6 mm where it is 2.6 mm
             let clear = |step: i32| {
                 let turn = f64::from(step) / 50_000.0 * 50f64.to_radians();
@@ -263,9 +261,9 @@ fn a_crossing_that_one_line_has_the_next_one_has() {
             };
             let clear = (-50_000..=50_000).map(clear).fold(f64::INFINITY, f64::min);
             if clear.abs() > 1e-5 {
-                assert_eq!(row[status], if clear < 0.0 { "trimmed" } else { "solved" }, "{count}: {clear} {row:?}");
+                assert_eq!(status, if clear < 0.0 { "trimmed" } else { "solved" }, "{count}: {clear} at {x}, {y}");
             }
-            trimmed += usize::from(row[status] == "trimmed");
+            trimmed += usize::from(status == "trimmed");
         }
         assert!(trimmed > 30 * count && trimmed < 50 * count, "{count}: {trimmed}");
     }
@@ -400,22 +398,15 @@ fn what_leaves_a_body_may_enter_it_again() {
         let trims: Vec<String> = by.iter().map(|by| format!("trim flank by {by}")).collect();
         let spec = RACKS.replace("RADIUS", &radius.to_string()).replace("TRIMS", &trims.join("\n    "));
         let spec = spec.replace("FIRST", &own.arguments()).replace("SECOND", &other.arguments());
-        let (file, out) = (written(&folder, "gear.chain", &spec), folder.to_str().expect("a plain path"));
-        let run = flank(&["solve", &file, "--no-picture", "--out", out]);
-        let table =
-            std::fs::read_to_string(folder.join("gear.csv")).unwrap_or_else(|_| panic!("{}", text(&run.stderr)));
-        let mut rows = table.lines().filter(|row| !row.starts_with('#')).map(|row| row.split(',').collect::<Vec<_>>());
-        let names = rows.next().expect("a head");
-        let [surface, status, x, y] = ["surface", "status", "x", "y"]
-            .map(|name| names.iter().position(|title| *title == name).expect("a column"));
         let mut told = [0, 0];
-        for row in rows.filter(|row| row[surface] == "flank") {
-            let at = [x, y].map(|column| row[column].parse().expect("a number"));
+        let gear = points(&folder, ("gear", &spec), ["surface", "status", "x", "y"]);
+        for [_, status, x, y] in gear.iter().filter(|[surface, ..]| surface == "flank") {
+            let at = [number(x), number(y)];
             let depth = other.depth(radius, at);
-            let is_taken = row[status] == "trimmed";
-            assert!(is_taken || row[status] == "solved", "{}", row[status]);
+            let is_taken = status == "trimmed";
+            assert!(is_taken || status == "solved", "{status}");
             // what lies between is touched, as far as the steps of the roll tell
-            assert!(if is_taken { depth > -1e-6 } else { depth < 1e-6 }, "{depth} at {at:?}, told {}", row[status]);
+            assert!(if is_taken { depth > -1e-6 } else { depth < 1e-6 }, "{depth} at {at:?}, told {status}");
             told[usize::from(is_taken)] += 1;
         }
         assert!(told[0] > 40 && told[1] > 20, "{told:?}");

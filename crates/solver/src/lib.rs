@@ -51,6 +51,7 @@ pub use contact::{
 };
 pub use continuation::follow::solve_grid;
 pub use continuation::grid::{Elsewhere, GridReport};
+pub use continuation::verdicts::turned;
 pub use conversion::explicit::{Explicit, ExplicitProblem, Given, NotExplicit};
 pub use conversion::poses::{Missing, PoseError, PoseProblem, Posture, TargetAxis};
 pub use conversion::settings::{

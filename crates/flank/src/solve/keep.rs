@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Dimension, RangedVariable};
-use flank_solver::SurfacePoint;
+use flank_solver::{SurfacePoint, turned};
 
 use crate::project::quantity::Extent;
 use crate::project::units;
@@ -52,15 +52,8 @@ impl Keep {
 
     /// Whether some unknowns meet it, perhaps some turns of a periodic one further on, as a sample takes it.
     fn holds(&self, unknowns: &[f64], periodic: &[bool]) -> bool {
-        let turned = |by: &[f64]| self.0.iter().all(|of| (of.low..=of.high).contains(&(of.at(unknowns) + of.at(by))));
-        let turns = (0..unknowns.len()).filter(|k| periodic[*k]).flat_map(|k| [-2.0, -1.0, 1.0, 2.0].map(|by| (k, by)));
-        let mut by = vec![0.0; unknowns.len()];
-        turned(&by)
-            || turns.into_iter().any(|(k, turns)| {
-                by.fill(0.0);
-                by[k] = turns * TAU;
-                turned(&by)
-            })
+        let holds = |unknowns: &[f64]| self.0.iter().all(|of| (of.low..=of.high).contains(&of.at(unknowns)));
+        holds(unknowns) || turned(unknowns, periodic).any(|other| holds(&other))
     }
 }
 

@@ -35,6 +35,16 @@ pub(crate) struct Keep<'c> {
     pub(crate) ranges: &'c [Range],
 }
 
+/// The same unknowns some turns of a periodic one further on, the nearest first: where a `keep` is looked at if it does not hold for themselves.
+pub fn turned(unknowns: &[f64], periodic: &[bool]) -> impl Iterator<Item = Vec<f64>> {
+    let turning = (0..periodic.len()).filter(|k| periodic[*k]);
+    turning.flat_map(|k| TURNS.map(|turns| (k, turns))).map(|(k, turns)| {
+        let mut other = unknowns.to_vec();
+        other[k] += turns * TAU;
+        other
+    })
+}
+
 impl Keep<'_> {
     /// The first condition that does not hold.
     pub(crate) fn broken(&self, unknowns: &[f64]) -> Option<usize> {
@@ -47,13 +57,7 @@ impl Keep<'_> {
     /// hold after none of these turns.
     fn met(&self, unknowns: &[f64], periodic: &[bool]) -> Result<Vec<Vec<f64>>, usize> {
         let Some(condition) = self.broken(unknowns) else { return Ok(vec![unknowns.to_vec()]) };
-        let turning = (0..periodic.len()).filter(|k| periodic[*k]);
-        let others = turning.flat_map(|k| TURNS.map(|turns| (k, turns))).map(|(k, turns)| {
-            let mut other = unknowns.to_vec();
-            other[k] += turns * TAU;
-            other
-        });
-        let met: Vec<Vec<f64>> = others.filter(|other| self.broken(other).is_none()).collect();
+        let met: Vec<Vec<f64>> = turned(unknowns, periodic).filter(|other| self.broken(other).is_none()).collect();
         if met.is_empty() { Err(condition) } else { Ok(met) }
     }
 

@@ -97,14 +97,11 @@ pub fn trim(
     let columns_down = (0..columns).map(|j| (0..rows).map(|i| i * columns + j).collect());
     let rows_across = (0..rows).map(|i| (0..columns).map(|j| i * columns + j).collect());
     for (lines, coordinate) in [(columns_down.collect::<Vec<Vec<usize>>>(), 0), (rows_across.collect(), 1)] {
-        let on_line = |indices: &Vec<usize>| Line::through(indices, targets, coordinate);
-        let through: Vec<(Line, Vec<&SurfacePoint>)> = lines
-            .iter()
-            .map(|indices| {
-                let own = indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved);
-                (on_line(indices), own.collect())
-            })
-            .collect();
+        let with_points = |indices: &Vec<usize>| {
+            let solved = indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved);
+            (Line::through(indices, targets, coordinate), solved.collect())
+        };
+        let through: Vec<(Line, Vec<&SurfacePoint>)> = lines.iter().map(with_points).collect();
         let mut all: Vec<Vec<Met>> = vec![Vec::new(); lines.len()];
         for (place, (intersection, number)) in intersections.iter().enumerate() {
             for (of, mut found) in meet(intersection, &through).into_iter().enumerate() {
@@ -253,5 +250,24 @@ fn spread(known: &mut [Known], joined: &[[usize; 2]]) {
         if !changed {
             break;
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point that stays beside one that goes with nothing between them: neither is known, and what hangs together with them is neither.
+    #[test]
+    fn what_lines_contradict_each_other_about_is_undecided() {
+        let stays = Known { stays: true, goes: None };
+        let goes = Known { stays: false, goes: Some(3) };
+        let mut known = [stays, stays, goes, goes, stays, Known::default()];
+        let joined = [[0, 1], [1, 2], [2, 3], [2, 5]];
+        contradict(&mut known, &joined);
+        spread(&mut known, &joined);
+        let is_undecided = |point: &Known| point.stays && point.goes == Some(3);
+        assert_eq!(known.each_ref().map(is_undecided), [false, true, true, false, false, true]);
+        assert!(known[0].goes.is_none() && !known[3].stays && known[4].goes.is_none());
     }
 }
