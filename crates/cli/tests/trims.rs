@@ -206,7 +206,7 @@ fn what_the_other_pin_covers_is_trimmed() {
     }
 }
 
-/// Two pins that roll past one work, each with a feed of its own: the wall of the first runs into the second pin's and out of it again.
+/// Two pins that roll past one work, each with a feed of its own: the wall of the first runs into what the second takes and out of it again.
 const ROLLED: &str = "
 machine roller {
     axis c : rotary
@@ -225,47 +225,113 @@ tool pin {
 }
 job rolled {
     machine m = roller
-    tool p = pin(r: 1.4 mm)
-    mount p on m.slide
-    motion turn : angle in -20 deg .. 20 deg
-    drive m.c, m.x, m.y = turn, 29.2 mm, -0.9 mm + 15 mm * turn
-    surface wall in m.part = envelope(p.skin, over: turn)
     machine n = roller
-    tool q = pin(r: 2.6 mm)
+    tool p = pin(r: OWN_RADIUS mm)
+    tool q = pin(r: OTHER_RADIUS mm)
+    mount p on m.slide
     mount q on n.slide
-    motion other : angle in -50 deg .. 50 deg
-    drive n.c, n.x, n.y = other, 30.1 mm, -0.2 mm + 33 mm * other
+    motion turn : angle in -20 deg .. 20 deg
+    motion other : angle in -OTHER_TURN deg .. OTHER_TURN deg
+    drive m.c, m.x, m.y = turn, OWN_WAY * turn
+    drive n.c, n.x, n.y = other, OTHER_WAY * other
+    surface wall in m.part = envelope(p.skin, over: turn)
     surface cut in n.part = envelope(q.skin, over: other)
     sample wall { turn: -19 deg .. 19 deg by 61, z: -1 mm .. 1 mm by COUNT
         keep nx: -1 .. 0.05 }
     trim wall by cut
 }";
 
-/// Points of one cross-section are alike on each of its lines, and a point stays exactly if the second pin is clear of it. The second crossing
-/// was found on some lines alone, and all points behind the first one were called trimmed on the others.
+/// A pin that rolls past the work: its radius, how far it is from the axis, by how much and in how many waves that changes, where it starts
+/// along its feed, the feed for a turn of one radian, mm, and the range of the turn to either side, degrees.
+struct Pin {
+    radius: f64,
+    far: f64,
+    swing: f64,
+    waves: f64,
+    start: f64,
+    feed: f64,
+    turn: f64,
+}
+
+impl Pin {
+    const fn new([radius, far, swing, waves, start, feed, turn]: [f64; 7]) -> Pin {
+        Pin { radius, far, swing, waves, start, feed, turn }
+    }
+
+    /// Where it goes, as a spec says it; the word for the turn follows.
+    fn way(&self, turn: &str) -> String {
+        let Pin { far, swing, waves, start, feed, .. } = self;
+        format!("{far} mm + {swing} mm * cos({waves} * {turn}), {start} mm + {feed} mm")
+    }
+
+    /// How far a point of the work stays off the pin on all its way. A step of 2e-5 rad of 34 mm and 43 mm/rad makes it larger by less than
+    /// 1e-6 mm where the pin has 1 mm.
+    fn clear(&self, [x, y]: [f64; 2]) -> f64 {
+        let off = |step: i32| {
+            let turn = f64::from(step) / 50_000.0 * self.turn.to_radians();
+            let (sin, cos) = turn.sin_cos();
+            let [along, across] = [cos * x - sin * y, sin * x + cos * y];
+            let far = self.far + self.swing * (self.waves * turn).cos();
+            (along - far).hypot(across - self.start - self.feed * turn) - self.radius
+        };
+        (-50_000..=50_000).map(off).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The points of the first pin's wall that its own tool leaves, each with whether it is trimmed. Of these a point stays exactly if the second
+/// pin is clear of it.
+fn rolled(folder: &Path, [own, other]: &[Pin; 2], count: usize) -> Vec<bool> {
+    let spec = ROLLED.replace("COUNT", &count.to_string()).replace("OTHER_TURN", &other.turn.to_string());
+    let spec = spec.replace("OWN_RADIUS", &own.radius.to_string()).replace("OTHER_RADIUS", &other.radius.to_string());
+    let spec = spec.replace("OWN_WAY", &own.way("turn")).replace("OTHER_WAY", &other.way("other"));
+    let mut verdicts = Vec::new();
+    for [surface, status, x, y] in points(folder, ("rolled", &spec), ["surface", "status", "x", "y"]) {
+        if surface != "wall" || status == "undercut" {
+            continue;
+        }
+        let clear = other.clear([number(&x), number(&y)]);
+        if clear.abs() > 1e-5 {
+            assert_eq!(status, if clear < 0.0 { "trimmed" } else { "solved" }, "{clear} at {x}, {y} of\n{spec}");
+        }
+        verdicts.push(status == "trimmed");
+    }
+    verdicts
+}
+
+/// Points of one cross-section are alike on each of its lines. The second crossing was found on some lines alone, and all points behind the first
+/// one were called trimmed on the others.
 #[test]
 fn a_crossing_that_one_line_has_the_next_one_has() {
     let folder = folder("rolled");
+    let pins = [[1.4, 29.2, 0.0, 1.0, -0.9, 15.0, 20.0], [2.6, 30.1, 0.0, 1.0, -0.2, 33.0, 50.0]].map(Pin::new);
     for count in [2, 3, 5] {
-        let spec = ROLLED.replace("COUNT", &count.to_string());
-        let wall = points(&folder, ("rolled", &spec), ["surface", "status", "x", "y"]);
-        let mut trimmed = 0;
-        for [_, status, x, y] in wall.iter().filter(|[surface, ..]| surface == "wall") {
-            let [x, y] = [number(x), number(y)];
-            // a step of 1.7e-5 rad of 34 mm and 33 mm/rad: off by less than 1e-6 mm where it is 2.6 mm
-            let clear = |step: i32| {
-                let turn = f64::from(step) / 50_000.0 * 50f64.to_radians();
-                let (sin, cos) = turn.sin_cos();
-                let [along, across] = [cos * x - sin * y, sin * x + cos * y];
-                (along - 30.1).hypot(across + 0.2 - 33.0 * turn) - 2.6
-            };
-            let clear = (-50_000..=50_000).map(clear).fold(f64::INFINITY, f64::min);
-            if clear.abs() > 1e-5 {
-                assert_eq!(status, if clear < 0.0 { "trimmed" } else { "solved" }, "{count}: {clear} at {x}, {y}");
-            }
-            trimmed += usize::from(status == "trimmed");
-        }
+        let trimmed = rolled(&folder, &pins, count).into_iter().filter(|is_trimmed| *is_trimmed).count();
         assert!(trimmed > 30 * count && trimmed < 50 * count, "{count}: {trimmed}");
+    }
+}
+
+/// What the second pin takes ends with its motion, where it leaves its own round and no envelope: points within it there went unseen, and all
+/// points beyond it were called trimmed. It leaves two walls, of which the nearer one counts: they were undecided.
+#[test]
+fn what_a_tool_takes_is_known_where_its_envelope_ends() {
+    let folder = folder("ends");
+    // with how many of how many points are trimmed
+    let cases = [
+        // some points are in the steel on all its way
+        ([1.9, 29.9, 0.5, 4.0, 0.8, 18.0, 20.0], [2.9, 29.2, 0.5, 3.0, 2.4, 33.0, 20.0], [88, 122]),
+        // points beyond the end of its motion
+        ([1.2, 30.7, 0.0, 5.0, 0.7, 21.0, 20.0], [2.1, 29.3, 0.0, 6.0, -3.0, 21.0, 20.0], [78, 122]),
+        ([1.1, 29.4, 0.5, 4.0, -0.7, 42.0, 20.0], [1.5, 29.8, 0.5, 5.0, 2.5, 39.0, 20.0], [72, 122]),
+        // nothing meets; beside the points lie both walls
+        ([2.0, 30.3, 0.5, 5.0, -1.7, 27.0, 20.0], [2.6, 30.2, 0.0, 7.0, 1.6, 27.0, 20.0], [66, 66]),
+        ([2.4, 31.2, 0.0, 7.0, -1.5, 18.0, 20.0], [1.6, 30.1, 0.5, 2.0, -0.5, 21.0, 20.0], [0, 122]),
+        // the wall comes out of what the pin takes where its own tool cuts it away
+        ([1.2, 31.8, 0.5, 2.0, -2.7, 39.0, 20.0], [1.7, 31.7, 0.0, 5.0, -2.2, 18.0, 50.0], [2, 80]),
+    ];
+    for (own, other, expected) in cases {
+        let verdicts = rolled(&folder, &[own, other].map(Pin::new), 2);
+        let trimmed = verdicts.iter().filter(|is_trimmed| **is_trimmed).count();
+        assert_eq!([trimmed, verdicts.len()], expected, "{own:?} {other:?}");
     }
 }
 

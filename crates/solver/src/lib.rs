@@ -43,7 +43,7 @@ pub use analysis::scatter::{GaussianDraw, Scatter};
 pub use analysis::secondary::{Judged, SecondaryCutting, Unseen};
 pub use analysis::section::SectionPlane;
 pub use analysis::sensitivity::{Displacement, NormalSensitivity, Parameter, total_derivatives};
-pub use analysis::trim::{Trim, trim};
+pub use analysis::trim::{Trim, TrimmedBy};
 pub use contact::{
     Carried, ContactChange, ContactNumber, ContactPath, ContactPoint, ContactProblem, ContactProof, ContactState,
     ContactSynthesis, ContactWish, Engagement, FlankCorners, FlankDirections, FlankEdge, Gap, GapProblem, NoContact,

@@ -291,7 +291,6 @@ fn judged<'g>(
     sample: &Sample<'_>,
     mut found: FoundPoints,
 ) -> FoundPoints {
-    secondary::judge_trims(job, surface, &mut found.points, sample.counts);
     found.positions = Some(secondary::judge(job, surface, &mut found.points, sample.counts));
     blank::cut(job, surface, &mut found.points);
     found

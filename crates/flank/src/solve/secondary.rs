@@ -112,24 +112,19 @@ pub(crate) fn tools_of<'g>(
     each.collect()
 }
 
-/// Marks the points of a grid that the tools of the surfaces which trim it cut away in positions that generate nothing beside them: at the
-/// ends of their motions, say.
-pub(crate) fn judge_trims<'g>(
+/// The tool's surface of one that trims another, in all positions; `None` where one tool makes both, or its positions are not known.
+pub(crate) fn positions_of_other<'g>(
     job: &Job<'g>,
     surface: &GeneratedSurface<'g>,
-    points: &mut [SurfacePoint],
-    counts: [usize; 2],
-) {
-    for (number, by) in surface.trimmed_by.iter().map(|&by| &job.surfaces[by]).enumerate() {
-        let is_other = by.generation.process == Process::Envelope && !is_of_same_tool(surface, by);
-        let Some((shape, own)) = piece(by).filter(|_| is_other) else { continue };
-        let motions = (&by.generation.motions[..], ranges(by)[2..].to_vec());
-        let values = job.bindings();
-        let pieces = [(number, BoundSurface::new(shape, own, &values))];
-        let cutting = SecondaryCutting::new(&pieces, &by.generation.driven.substituted(&values), motions)
-            .expect("a job without errors leaves nothing unbound");
-        cutting.judge_of_another(points, counts, number);
-    }
+    (by, number): (&GeneratedSurface<'g>, usize),
+) -> Option<SecondaryCutting> {
+    let is_other = by.generation.process == Process::Envelope && !is_of_same_tool(surface, by);
+    let (shape, own) = piece(by).filter(|_| is_other)?;
+    let motions = (&by.generation.motions[..], ranges(by)[2..].to_vec());
+    let values = job.bindings();
+    let pieces = [(number, BoundSurface::new(shape, own, &values))];
+    let cutting = SecondaryCutting::new(&pieces, &by.generation.driven.substituted(&values), motions);
+    Some(cutting.expect("a job without errors leaves nothing unbound"))
 }
 
 /// The tool's surface with the ranges of its parameters; `None` where the tool is an edge, generated itself, or given by an equation.

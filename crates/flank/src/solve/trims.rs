@@ -1,11 +1,11 @@
 //! `trim flank by fillet`: what one surface of a job cuts away of another.
 
 use flank_chain_dsl::{GeneratedSurface, Job, Sample};
-use flank_solver::{Meeting, SurfacePoint, Trim};
+use flank_solver::{Meeting, SurfacePoint, Trim, TrimmedBy};
 
 use crate::project::session::Session;
 use crate::solve::limits::Line;
-use crate::solve::secondary::{is_of_same_tool, tool_positions};
+use crate::solve::secondary::{is_of_same_tool, positions_of_other, tool_positions};
 use crate::solve::summary::Summary;
 use crate::solve::surface::{bound, problem};
 
@@ -28,7 +28,11 @@ pub(crate) fn cut<'j, 'g>(
         let together: Vec<usize> =
             (first..all.len()).filter(|&k| k == first || is_of_same_tool(all[first], all[k])).collect();
         let bounds: Vec<_> = together.iter().map(|&k| bound(job, all[k])).collect();
-        let by = bounds.iter().zip(together.iter().copied()).collect();
+        let by = |(bound, &number)| {
+            let positions = positions_of_other(job, surface, (all[number], number));
+            TrimmedBy { surface: bound, number, positions }
+        };
+        let by = bounds.iter().zip(&together).map(by).collect();
         let tool = (together.len() > 1).then(|| tool_positions(job, all[first], &job.bindings()).ok()).flatten();
         let trim = Trim { surface: &own, by, tool, coordinates: sample.functions() };
         let points_of_by = |place: usize, coordinates| problem(job, all[together[place]], coordinates, session);

@@ -48,7 +48,7 @@ pub struct Line {
 /// A point that two surfaces have in common.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Meeting {
-    /// The point as one of the first surface.
+    /// The point as one of the first surface, [`CutBy::ItsTool`](crate::equations::solution::CutBy::ItsTool) where that is cut away by its own tool.
     pub first: SurfacePoint,
     /// The point as one of the second.
     pub second: SurfacePoint,
@@ -86,7 +86,6 @@ impl Intersection {
         let constraints = first.constraints.iter().chain(&second.constraints).copied();
         let residuals: Vec<Expr<'g>> = constraints.chain(apart.0).chain([x * line[3] - y * line[2]]).collect();
         let unknowns: Vec<Expr<'g>> = first.unknowns.iter().chain(&second.unknowns).copied().collect();
-        let conditions = [first.clearance_minors(), second.clearance_minors()].concat();
         let slopes = first.unknowns.iter().map(|&p| along.derivative(p));
         let vectors = [first.position, first.normal, second.normal].into_iter().flat_map(|Vector3(parts)| parts);
         let probe: Vec<Expr<'g>> = vectors.chain([along]).chain(slopes).collect();
@@ -94,11 +93,16 @@ impl Intersection {
         Ok(Intersection {
             system: System::one_by_one(&residuals, &unknowns, &line)?.with_conditions(
                 &residuals,
-                &conditions,
+                &second.clearance_minors(),
                 &[],
                 &inputs,
             )?,
-            own: System::one_by_one(&placed, &first.unknowns, &[])?,
+            own: System::one_by_one(&placed, &first.unknowns, &[])?.with_conditions(
+                &placed,
+                &first.clearance_minors(),
+                &[],
+                &first.unknowns,
+            )?,
             ranges,
             first_unknowns: first.unknowns.len(),
             probe: Tape::new(&probe, &inputs)?,
@@ -106,9 +110,10 @@ impl Intersection {
         })
     }
 
-    /// The points at which the surfaces cross on a line, in the order along it: inside the ranges, of the part of both that
-    /// the tool leaves, and not where they only touch. Where the first surface folds over the coordinates, points beyond the fold lie in
-    /// another order along the line, and are none of these.
+    /// The points at which the surfaces cross on a line, in the order along it: inside the ranges, of the part of the second that
+    /// its tool leaves, and not where they only touch. The first one's tool may cut it away there itself, as the first point's outcome
+    /// tells. Where the first surface folds over the coordinates, points beyond the fold lie in another order along the line, and are
+    /// none of these.
     ///
     /// They are looked for from unknowns of both (meetings on the line beside this one, say) and from points of the first
     /// surface near the line, each with the nearest known point of the second.
@@ -154,7 +159,8 @@ impl Intersection {
         for triple in known.windows(3) {
             let [before, here, after] = [0, 1, 2].map(|k| triple[k].1.distance.abs());
             if here + NEARER < before.min(after) {
-                starts.push(both(triple[1]));
+                // of two crossings close together each is nearer to one of the neighbours
+                starts.extend([1, 0, 2].map(|k| both(triple[k])));
             }
         }
         starts
@@ -188,8 +194,8 @@ impl Intersection {
         evaluation.at(&solution.unknowns);
         let moved = inverse_times(evaluation, &held);
         let farther: f64 = slopes.iter().zip(&moved).map(|(slope, by)| slope * by).sum();
-        let point = |unknowns: &[f64], normal| SurfacePoint {
-            outcome: Outcome::Solved,
+        let point = |outcome, unknowns: &[f64], normal| SurfacePoint {
+            outcome,
             unknowns: unknowns.to_vec(),
             position,
             normal,
@@ -197,8 +203,8 @@ impl Intersection {
         };
         let (first, second) = solution.unknowns.split_at(self.first_unknowns);
         Meeting {
-            first: point(first, first_normal),
-            second: point(second, second_normal),
+            first: point(self.own.evaluation(&[]).conditions.side(first), first, first_normal),
+            second: point(Outcome::Solved, second, second_normal),
             along,
             leaves: farther > 0.0,
         }

@@ -2,7 +2,7 @@
 
 use std::cell::RefCell;
 
-use flank_solver::{Blank, Intersection, Line, Meeting, SurfacePoint};
+use flank_solver::{Blank, Intersection, Line, Meeting, Outcome, SurfacePoint};
 
 use crate::solve::body::piece::{Piece, SAME_LINE, apart};
 
@@ -102,7 +102,8 @@ impl<'j, 'g> Course<'j, 'g> {
         let [first, second] = self.pieces.each_ref();
         let along = |point: &SurfacePoint| (first.along_of(blank, point) - share).abs();
         let least = |meetings: Vec<Meeting>, off: &dyn Fn(&Meeting) -> f64| {
-            let meetings = meetings.into_iter().filter(|meeting| !self.is_on_other(meeting));
+            let is_left = |meeting: &Meeting| meeting.first.outcome == Outcome::Solved && !self.is_on_other(meeting);
+            let meetings = meetings.into_iter().filter(is_left);
             meetings.min_by(|a, b| off(a).total_cmp(&off(b)))
         };
         let line = |near: &SurfacePoint| Line { from: [near.unknowns[self.across], share], direction: [1.0, 0.0] };

@@ -1,7 +1,7 @@
 //! Steel of a body that a tool of its job takes away: in another position than the one that generates a surface, or as a surface that trims it.
 
 use flank_chain_dsl::{GeneratedSurface, Job, Solid};
-use flank_solver::{Blank, CutBy, Outcome, SurfacePoint, Trim};
+use flank_solver::{Blank, CutBy, Outcome, SurfacePoint, Trim, TrimmedBy};
 
 use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind};
@@ -101,7 +101,9 @@ pub(crate) fn by_trims(
         let Nodes { mut points, targets, counts } = nodes.thinned();
         let (own, other) = (piece.bound(), bound(job, by));
         let coordinates = piece.across(unknown, blank);
-        let trim = Trim { surface: &own, by: vec![(&other, number)], tool: None, coordinates };
+        let positions = secondary::positions_of_other(job, surface, (by, number));
+        let trim_by = TrimmedBy { surface: &other, number, positions };
+        let trim = Trim { surface: &own, by: vec![trim_by], tool: None, coordinates };
         let points_of_by = |_, coordinates| problem(job, by, coordinates, session);
         trim.apply(&mut points, (&targets, counts), &points_of_by)
             .expect("a job without errors leaves nothing unbound");

@@ -73,12 +73,20 @@ impl SecondaryCutting {
     }
 
     /// The same of points that another tool generates, by one that also cuts the work, along motions of its own: marked as
-    /// [`CutBy::Other`]`(number)`. Nothing is looked at if there are several motions.
+    /// [`CutBy::Other`]`(number)`. Nothing is looked at if there are several motions. Gives back whether all positions were.
     ///
     /// # Panics
     /// As for [`SecondaryCutting::judge`].
-    pub fn judge_of_another(&self, points: &mut [SurfacePoint], counts: [usize; 2], number: usize) -> Judged {
-        if self.ranges.len() == 1 { self.judged(points, counts, (Some(number), None)) } else { Judged::default() }
+    pub(crate) fn judge_of_another(&self, points: &mut [SurfacePoint], counts: [usize; 2], number: usize) -> bool {
+        self.ranges.len() == 1 && self.judged(points, counts, (Some(number), None)).unseen.is_none()
+    }
+
+    /// Whether a point that another tool generates, and that was judged not to be cut away, lies before the tool's surface in all positions, and
+    /// never beyond an end of it.
+    pub(crate) fn is_clear_of(&self, point: &SurfacePoint) -> bool {
+        let mut judge = Judge::new(self, point, false);
+        let ways = judge.ways(&[point], &[self.motions(point, false)], 0);
+        judge.seen.iter_mut().all(|seen| seen.never_over(&ways[0]))
     }
 
     /// `of_another` is the number by which the tool is named if it does not generate the points.
@@ -154,6 +162,11 @@ impl<'c> Judge<'c> {
                     let cut = way.cut(&mut sights);
                     self.looks += way.looks;
                     *deepest = (*deepest).into_iter().chain(cut).reduce(Cut::deeper);
+                }
+            }
+            if !self.is_own {
+                for (places, deepest) in ways.iter().zip(&mut deepest).filter(|(_, deepest)| deepest.is_none()) {
+                    *deepest = self.seen.iter_mut().filter_map(|seen| seen.always_over(places)).reduce(Cut::deeper);
                 }
             }
         }

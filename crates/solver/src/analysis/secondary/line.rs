@@ -245,6 +245,30 @@ impl<'c> Seen<'c> {
         wanted.into_iter().zip(found).for_each(|(sight, found)| sight.found = Some(found));
         (sights, starts.len() as u64)
     }
+
+    /// The clearance of each of some places at the nearest foot, `None` where that lies beyond an end of the piece.
+    fn clearances(&mut self, places: &[Place]) -> impl Iterator<Item = Option<f64>> {
+        let mut before: Option<Near> = None;
+        places.iter().map(move |place| {
+            let near = self.piece.near(&place.point, f64::INFINITY, [before.as_ref(), None])?;
+            before = Some(near);
+            let Found::Foot(foot) = self.foot(&place.point, near.at) else { return None };
+            (self.piece.side(foot.at) == [0, 0]).then_some(foot.clearance)
+        })
+    }
+
+    /// The cut of a point that lies behind the piece at all its places: it enters the steel nowhere, as it never comes out.
+    pub(super) fn always_over(&mut self, places: &[Place]) -> Option<Cut> {
+        let by = self.piece.number;
+        let deeper = |depth: f64, clearance: Option<f64>| clearance.filter(|c| *c < -TOUCH).map(|c| depth.max(-c));
+        let depth = self.clearances(places).try_fold(0.0, deeper)?;
+        Some(Cut { by, depth })
+    }
+
+    /// Whether a point lies before the piece at all its places.
+    pub(super) fn never_over(&mut self, places: &[Place]) -> bool {
+        self.clearances(places).all(|clearance| clearance.is_some_and(|clearance| clearance > -TOUCH))
+    }
 }
 
 impl Piece {

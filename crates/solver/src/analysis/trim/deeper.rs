@@ -4,9 +4,9 @@ use flank_expr::{Expr, TapeError};
 
 use crate::analysis::alignment::Alignment;
 use crate::analysis::deviation::Deviation;
+use crate::analysis::trim::TrimmedBy;
 use crate::equations::solution::{CutBy, Outcome};
 use crate::surface::SurfaceProblem;
-use crate::surface::bound::BoundSurface;
 use crate::surface::points::SurfacePoint;
 
 /// Nearer than this, mm, two surfaces lie on each other.
@@ -15,24 +15,29 @@ const ON_EACH_OTHER: f64 = 1e-9;
 const CLEARLY: f64 = 2.0;
 
 /// Marks the solved points below which, along their normals into the material, `by` lies and faces the same way, with the number of the
-/// trim. Where `by` has several branches beside them, it is not known which counts.
+/// trim. Where `by` has several branches beside them, it is not known which counts, unless points are clear of
+/// the tool, of which it `is_swept_known` what it sweeps.
 pub(super) fn mark_deeper<'g>(
-    by: &BoundSurface<'g>,
+    by: &TrimmedBy<'_, 'g>,
     points: &mut [SurfacePoint],
     counts: [usize; 2],
-    number: usize,
+    is_swept_known: bool,
     points_of_by: &dyn Fn([Expr<'g>; 2]) -> SurfaceProblem,
 ) -> Result<(), TapeError> {
     let Some(places) = Places::telling(points) else { return Ok(()) };
-    let coordinates = places.of_surface(by.surface().position.0);
+    let coordinates = places.of_surface(by.surface.surface().position.0);
     let (near, _) = points_of_by(coordinates).points_alone().solve(&places.targets(points), counts);
     let near = with_neighbours(&near, counts);
-    let off = Deviation::new(by, Alignment::default())?.map(points, &near, 0.0);
+    let off = Deviation::new(by.surface, Alignment::default())?.map(points, &near, 0.0);
+    let positions = by.positions.as_ref().filter(|_| is_swept_known);
     for ((point, near), off) in points.iter_mut().zip(&near).zip(off) {
         let is_deeper = off.is_some_and(|off| off < -ON_EACH_OTHER) && turned_normal(near, point) > 0.0;
         if is_deeper {
-            point.outcome = Outcome::CutAway(CutBy::Other(number));
-        } else if point.outcome == Outcome::Solved && near.outcome == Outcome::Ambiguous {
+            point.outcome = Outcome::CutAway(CutBy::Other(by.number));
+        } else if point.outcome == Outcome::Solved
+            && near.outcome == Outcome::Ambiguous
+            && !positions.is_some_and(|positions| positions.is_clear_of(point))
+        {
             point.outcome = Outcome::Undecided;
         }
     }

@@ -19,39 +19,64 @@ const ON_EDGE: f64 = 1e-9;
 pub struct Trim<'s, 'g> {
     /// The surface that loses points.
     pub surface: &'s BoundSurface<'g>,
-    /// Those that take them, in the same frame, each with what marks the points that go, as [`CutBy::Other`].
-    pub by: Vec<(&'s BoundSurface<'g>, usize)>,
+    /// Those that take them, in the same frame.
+    pub by: Vec<TrimmedBy<'s, 'g>>,
     /// The tool that makes them, if they are several: where it cuts one of them away itself, that one does not bound the body.
     pub tool: Option<SecondaryCutting>,
     /// By which points of the first are asked for.
     pub coordinates: [Expr<'g>; 2],
 }
 
+/// One of the surfaces that cut another away.
+#[derive(Clone, Debug)]
+pub struct TrimmedBy<'s, 'g> {
+    /// The surface.
+    pub surface: &'s BoundSurface<'g>,
+    /// What marks the points that go, as [`CutBy::Other`].
+    pub number: usize,
+    /// Its tool's surface in all its positions, if that is another one than makes the trimmed surface.
+    pub positions: Option<SecondaryCutting>,
+}
+
 impl<'g> Trim<'_, 'g> {
-    /// Marks the points of a grid that the others cut away, and gives back where each of them meets the surface on the grid, as [`trim`]
-    /// does. One that it meets nowhere has taken all that it lies deeper than in the material; points of it beside the surface's are solved by
-    /// `points_of_by`, given its place among the others and two functions of its unknowns.
+    /// Marks the points of a grid that the others cut away, and gives back where each of them meets the surface on the grid: on the columns,
+    /// one after the other, and on the rows. What a tool sweeps in any position goes first. One of the others that the surface meets nowhere
+    /// has taken all that it lies deeper than in the material; points of it beside the surface's are solved by `points_of_by`, given its place
+    /// among the others and two functions of its unknowns.
+    ///
+    /// `targets` are the values of the two coordinates, row by row. Each row and each column is a line on the first surface. The
+    /// surfaces are brought to meet on it; a point is cut away if between it and the next meeting, before or after, the surface
+    /// runs outside the body that the others bound: a line that leaves it through one of them may enter it again through another. A point
+    /// without a meeting on its row and column is as the neighbours that no meeting parts from it. What rows, columns and neighbours disagree about
+    /// is [`Outcome::Undecided`]. Meetings with what the tool of the others cuts away of them itself are left out.
     ///
     /// # Errors
     /// If something depends on a variable that is neither an unknown nor has a value.
     ///
     /// # Panics
-    /// As for [`trim`].
+    /// If there are not `counts[0] · counts[1]` targets and points.
     pub fn apply(
         &self,
         points: &mut [SurfacePoint],
         (targets, counts): (&[[f64; 2]], [usize; 2]),
         points_of_by: &dyn Fn(usize, [Expr<'g>; 2]) -> SurfaceProblem,
     ) -> Result<Vec<[Vec<Meeting>; 2]>, TapeError> {
-        let intersection = |&(by, number): &(&BoundSurface<'g>, usize)| {
-            Ok((Intersection::new([self.surface, by], self.coordinates)?, number))
+        let sweeps = |by: &TrimmedBy<'_, 'g>| match &by.positions {
+            Some(positions) => positions.judge_of_another(points, counts, by.number),
+            None => false,
         };
+        // each of them, even where one was not looked at
+        let is_swept_known = self.by.iter().map(sweeps).fold(true, |all, one| all && one);
+        let intersection =
+            |by: &TrimmedBy<'_, 'g>| Ok((Intersection::new([self.surface, by.surface], self.coordinates)?, by.number));
         let intersections: Vec<(Intersection, usize)> = self.by.iter().map(intersection).collect::<Result<_, _>>()?;
-        let meetings = trim(points, targets, counts, (&intersections, self.tool.as_ref()));
-        for (place, ((by, number), met)) in self.by.iter().zip(&meetings).enumerate() {
+        let positions: Option<Vec<&SecondaryCutting>> =
+            self.by.iter().map(|by| by.positions.as_ref().filter(|_| is_swept_known)).collect();
+        let meetings = trim(points, (targets, counts), (&intersections, self.tool.as_ref()), positions.as_deref());
+        for (place, (by, met)) in self.by.iter().zip(&meetings).enumerate() {
             if met.iter().all(Vec::is_empty) {
                 let points_of_by = |coordinates| points_of_by(place, coordinates);
-                deeper::mark_deeper(by, points, counts, *number, &points_of_by)?;
+                deeper::mark_deeper(by, points, counts, is_swept_known, &points_of_by)?;
             }
         }
         Ok(meetings)
@@ -64,33 +89,30 @@ struct Known {
     stays: bool,
     /// The number of what takes it.
     goes: Option<usize>,
+    /// For sure, as its tool sweeps it.
+    is_swept: bool,
 }
 
 /// Where the surface meets one of those that trim it, whose number comes with it.
 type Met = (Meeting, usize);
 
-/// Marks the solved points of a grid of the intersections' first surface that their second ones cut away, as
-/// [`CutBy::Other`] of the number of each, and gives back where it meets each of them on the grid: on the columns, one after the other, and on
-/// the rows.
-///
-/// `targets` are the values of the two coordinates, row by row. Each row and each column is a line on the first surface. The
-/// surfaces are brought to meet on it; a point is cut away if between it and the next meeting, before or after, the surface
-/// runs outside the body that the second ones bound: a line that leaves it through one of them may enter it again through another. A point
-/// without a meeting on its row and column is as the neighbours that no meeting parts from it. What rows, columns and neighbours disagree about
-/// is [`Outcome::Undecided`]. Where nothing meets, nothing is cut away. Meetings with what the `tool` of the second ones cuts away of them itself
-/// are left out.
-///
-/// # Panics
-/// If there are not `counts[0] · counts[1]` targets and points.
-pub fn trim(
+/// Marks the points as [`Trim::apply`] does where surfaces meet; the `positions` of the others' tools are given if all of them were looked at.
+fn trim(
     points: &mut [SurfacePoint],
-    targets: &[[f64; 2]],
-    counts: [usize; 2],
+    (targets, counts): (&[[f64; 2]], [usize; 2]),
     (intersections, tool): (&[(Intersection, usize)], Option<&SecondaryCutting>),
+    positions: Option<&[&SecondaryCutting]>,
 ) -> Vec<[Vec<Meeting>; 2]> {
     assert_eq!(targets.len(), counts[0] * counts[1], "one target for each point of the grid");
     assert_eq!(targets.len(), points.len(), "one point for each target");
-    let mut known = vec![Known::default(); points.len()];
+    let is_one_of = |number: usize| intersections.iter().any(|(_, own)| *own == number);
+    let swept = |point: &SurfacePoint| match point.outcome {
+        Outcome::CutAway(CutBy::Other(number)) if is_one_of(number) => {
+            Known { stays: false, goes: Some(number), is_swept: true }
+        }
+        _ => Known::default(),
+    };
+    let mut known: Vec<Known> = points.iter().map(swept).collect();
     let mut joined: Vec<[usize; 2]> = Vec::new();
     let mut meetings = vec![[Vec::new(), Vec::new()]; intersections.len()];
     let [rows, columns] = counts;
@@ -98,8 +120,9 @@ pub fn trim(
     let rows_across = (0..rows).map(|i| (0..columns).map(|j| i * columns + j).collect());
     for (lines, coordinate) in [(columns_down.collect::<Vec<Vec<usize>>>(), 0), (rows_across.collect(), 1)] {
         let with_points = |indices: &Vec<usize>| {
-            let solved = indices.iter().map(|&at| &points[at]).filter(|point| point.outcome == Outcome::Solved);
-            (Line::through(indices, targets, coordinate), solved.collect())
+            // what the tool itself cuts away of a line joins the parts of it that stay
+            let known = |point: &&SurfacePoint| matches!(point.outcome, Outcome::Solved | Outcome::CutAway(_));
+            (Line::through(indices, targets, coordinate), indices.iter().map(|&at| &points[at]).filter(known).collect())
         };
         let through: Vec<(Line, Vec<&SurfacePoint>)> = lines.iter().map(with_points).collect();
         let mut all: Vec<Vec<Met>> = vec![Vec::new(); lines.len()];
@@ -108,9 +131,11 @@ pub fn trim(
                 if let Some(tool) = tool {
                     keep_left(&mut found, tool);
                 }
-                let on_grid =
-                    found.iter().filter(|meeting| through[of].0.is_on_grid(meeting.along, &lines[of], targets));
-                meetings[place][coordinate].extend(on_grid.cloned());
+                let is_listed = |meeting: &&Meeting| {
+                    meeting.first.outcome == Outcome::Solved
+                        && through[of].0.is_on_grid(meeting.along, &lines[of], targets)
+                };
+                meetings[place][coordinate].extend(found.iter().filter(is_listed).cloned());
                 all[of].extend(found.into_iter().map(|meeting| (meeting, *number)));
             }
         }
@@ -118,6 +143,10 @@ pub fn trim(
             all.sort_by(|a, b| a.0.along.total_cmp(&b.0.along));
             decide(&mut known, &mut joined, indices, targets, *line, &all);
         }
+    }
+    if let Some(positions) = positions {
+        let is_clear = |at: usize| positions.iter().all(|positions| positions.is_clear_of(&points[at]));
+        part(&mut known, &mut joined, &is_clear);
     }
     contradict(&mut known, &joined);
     spread(&mut known, &joined);
@@ -195,6 +224,9 @@ fn decide(
     let place = |at: usize| line.along(targets[at]);
     for &at in indices {
         let s = place(at);
+        if known[at].is_swept {
+            continue;
+        }
         if found.iter().any(|(meeting, _)| (meeting.along - s).abs() <= ON_EDGE) {
             known[at].stays = true;
             continue;
@@ -214,6 +246,29 @@ fn decide(
         let (a, b) = (place(pair[0]), place(pair[1]));
         if !found.iter().any(|(meeting, _)| (a.min(b) - ON_EDGE..=a.max(b) + ON_EDGE).contains(&meeting.along)) {
             joined.push([pair[0], pair[1]]);
+        }
+    }
+}
+
+/// What no tool sweeps and no meeting parts from what one sweeps lies beyond the end of a motion or of a tool's surface: no verdict comes to it
+/// from there. It stays if it `is_clear` of the tools in all positions, whatever is told from elsewhere.
+fn part(known: &mut [Known], joined: &mut Vec<[usize; 2]>, is_clear: &dyn Fn(usize) -> bool) {
+    let is_end = |[a, b]: &[usize; 2], known: &[Known]| known[*a].is_swept != known[*b].is_swept;
+    let mut next: Vec<usize> =
+        joined.extract_if(.., |pair| is_end(pair, known)).map(|[a, b]| if known[a].is_swept { b } else { a }).collect();
+    let mut beside: Vec<Vec<usize>> = vec![Vec::new(); known.len()];
+    for &[a, b] in joined.iter() {
+        beside[a].push(b);
+        beside[b].push(a);
+    }
+    let mut is_seen = vec![false; known.len()];
+    while let Some(at) = next.pop() {
+        if known[at].stays || std::mem::replace(&mut is_seen[at], true) {
+            continue;
+        }
+        if is_clear(at) {
+            known[at] = Known { stays: true, ..Known::default() };
+            next.extend(&beside[at]);
         }
     }
 }
@@ -239,7 +294,7 @@ fn spread(known: &mut [Known], joined: &[[usize; 2]]) {
         let mut changed = false;
         for &[a, b] in joined.iter().chain(joined.iter().rev()) {
             for (from, to) in [(a, b), (b, a)] {
-                let Known { stays, goes } = known[from];
+                let Known { stays, goes, .. } = known[from];
                 if open[to] && ((stays && !known[to].stays) || (goes.is_some() && known[to].goes.is_none())) {
                     known[to].stays |= stays;
                     known[to].goes = known[to].goes.or(goes);
@@ -260,8 +315,8 @@ mod tests {
     /// A point that stays beside one that goes with nothing between them: neither is known, and what hangs together with them is neither.
     #[test]
     fn what_lines_contradict_each_other_about_is_undecided() {
-        let stays = Known { stays: true, goes: None };
-        let goes = Known { stays: false, goes: Some(3) };
+        let stays = Known { stays: true, ..Known::default() };
+        let goes = Known { goes: Some(3), ..Known::default() };
         let mut known = [stays, stays, goes, goes, stays, Known::default()];
         let joined = [[0, 1], [1, 2], [2, 3], [2, 5]];
         contradict(&mut known, &joined);
