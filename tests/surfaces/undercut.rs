@@ -3,7 +3,7 @@
 use flank_chain_dsl::{GeneratedSurface, Job, ToolShape, compile_text, render};
 use flank_expr::geometry::Vector3;
 use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
-use flank_solver::{CutBy, Intersection, Meeting, Outcome, Range, SurfacePoint, SurfaceProblem, System, solve, trim};
+use flank_solver::{CutBy, Meeting, Outcome, Range, SurfacePoint, SurfaceProblem, System, Trim, TrimmedBy, solve};
 use flank_tests::{bound, difference, job, number, points, reference_json, repository, reversed, vector};
 
 const SPUR: &str = "specs/hobbing/spur_gear.chain";
@@ -410,8 +410,10 @@ fn trimmed(
     let [first, second] = [first, second].map(|surface| bound(job, surface));
     let problem = SurfaceProblem::new(&first, coordinates);
     let (mut points, _) = problem.expect("nothing is unbound").solve(targets, counts);
-    let intersection = Intersection::new([&first, &second], coordinates).expect("nothing is unbound");
-    let meetings = trim(&mut points, targets, counts, (&[(intersection, 0)], None));
+    let by = TrimmedBy { surface: &second, number: 0, positions: None };
+    let trim = Trim { surface: &first, by: vec![by], tool: None, coordinates };
+    let points_of_by = |_, coordinates| SurfaceProblem::new(&second, coordinates).expect("nothing is unbound");
+    let meetings = trim.apply(&mut points, (targets, counts), &points_of_by).expect("nothing is unbound");
     (points, meetings.concat().concat())
 }
 
