@@ -248,8 +248,11 @@ impl<'g> Builder<'_, 'g> {
             for axis in machine.axes.iter().filter(|axis| axis.law != axis.variable) {
                 let value = match context.constant_kept(axis.law) {
                     Constant::Known(value) => value,
-                    Constant::Moves(_) if context.is_nowhere(axis.law) => f64::NAN,
-                    Constant::Moves(_) | Constant::Unknown => continue,
+                    Constant::Moves(_) => match context.nowhere(axis.law) {
+                        Some(value) => value,
+                        None => continue,
+                    },
+                    Constant::Unknown => continue,
                 };
                 if !value.is_finite() {
                     let what = format!("the law of `{}.{}`", machine.name, axis.name);

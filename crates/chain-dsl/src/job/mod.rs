@@ -14,6 +14,7 @@ pub(crate) mod expect;
 mod independence;
 mod mill;
 mod no_surface;
+mod places;
 mod sliding;
 mod solid;
 mod surfaces;

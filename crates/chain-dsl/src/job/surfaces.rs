@@ -72,6 +72,9 @@ impl<'g> Builder<'_, 'g> {
             return None;
         }
         let path = self.path_between(context, frame, available.frame, written.value.span)?;
+        if !self.has_places(context, &path, (frame, written.frame.span)) {
+            return None;
+        }
         let t_work_tool = Chain::new(context.graph, path.iter().flat_map(|(_, steps)| steps.iter().copied()).collect());
         let driven = t_work_tool.substituted(&self.laws).merged();
         if self.stands_still(context, (&written.frame, frame), &driven, motions, &available) {

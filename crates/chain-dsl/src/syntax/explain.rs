@@ -213,7 +213,7 @@ impl<'s> Mistake<'s> {
         let wants = self.expected.contains(&Rule::infix) && !others.iter().any(|rule| self.expected.contains(rule));
         let is_missing = is_value && follows && wants && !is_entry && !self.ends() && !self.leads();
         let report = is_missing.then(|| self.unexpected());
-        let report = report.filter(|report| report.help.is_none() && !report.message.contains("operator"))?;
+        let report = report.filter(|report| report.help.is_none())?;
         let (before, found) = (self.scan.quote(self.found - 1), self.scan.quote(self.found));
         let help = "an operator such as `*` belongs between";
         Some(report.help(format!("{help} {before} and {found}, or a comma if they are two values")))
@@ -244,23 +244,39 @@ impl<'s> Mistake<'s> {
                 self.place(),
                 meant,
             ),
+            None if self.lacks_operator(&rules) => self.with_product(diagnostic),
             None => diagnostic,
         }
     }
 
-    fn expects(&self, rules: &[Rule]) -> Diagnostic {
-        let value = match self.kind() {
+    /// Whether two values stand side by side.
+    fn lacks_operator(&self, rules: &[Rule]) -> bool {
+        let is_value = match self.kind() {
             Some(Kind::Word) => words::reserved(self.say()).is_none(),
             Some(Kind::Number | Kind::Text) => true,
             _ => matches!(self.say(), "(" | "["),
         };
+        is_value && rules.contains(&Rule::infix) && !self.leads() && !self.ends()
+    }
+
+    /// `module teeth`, `2(u + v)`
+    fn with_product(&self, diagnostic: Diagnostic) -> Diagnostic {
+        if [self.kind(), self.kind_before()].contains(&Some(Kind::Text)) {
+            return diagnostic;
+        }
+        let gap = Span { end: self.place().start, ..self.behind(self.found - 1) };
+        let (before, found) = (self.scan.short(self.found - 1), self.scan.short(self.found));
+        diagnostic.help(format!("a product is written `{before} * {found}`")).cure("write `*`", gap, " * ")
+    }
+
+    fn expects(&self, rules: &[Rule]) -> Diagnostic {
         let found = self.scan.quote(self.found);
         let list = expected::list(rules, &self.surroundings());
         if self.expected.contains(&Rule::EOI) && self.leads() && !self.ends() {
             self.here(format!("expected the next statement, found {found}"))
         } else if self.leads() || self.ends() {
             self.missing(&list)
-        } else if value && rules.contains(&Rule::infix) {
+        } else if self.lacks_operator(rules) {
             let before = self.scan.quote(self.found - 1);
             self.here(format!("expected an operator between {before} and {found}"))
         } else {

@@ -17,7 +17,7 @@ use crate::limits;
 use crate::syntax::ast;
 use crate::values::angle_product::AngleProducts;
 use crate::values::dimension::{Dimension, shown};
-use crate::values::steel_side::SteelSide;
+use crate::values::steel_side::{SteelSide, steps};
 use crate::values::table_files::Tables;
 use crate::values::value::{Constant, Value};
 
@@ -338,9 +338,32 @@ impl<'g> Context<'g> {
         self.enclosed(expr, true)
     }
 
-    /// Whether an expression, which the model keeps, has no value anywhere.
-    pub(crate) fn is_nowhere(&self, expr: Expr<'g>) -> bool {
-        self.enclosed(expr, false).is_ok_and(Interval::is_empty)
+    /// The number that an expression, which the model keeps, is instead of a finite one wherever its variables are in their ranges;
+    /// nothing where it is not known to be so.
+    pub(crate) fn nowhere(&self, expr: Expr<'g>) -> Option<f64> {
+        let range = self.enclosed(expr, false).ok()?;
+        if range.is_empty() {
+            return Some(f64::NAN);
+        }
+        let divides = !range.continuous && self.zero_divisors(expr).next().is_some();
+        (divides && !self.is_seen(expr)).then_some(f64::INFINITY)
+    }
+
+    /// Whether an expression is finite at one of some places in the ranges of its variables.
+    fn is_seen(&self, expr: Expr<'g>) -> bool {
+        const LOOKS: usize = 20;
+        let Ok(ranges) = self.ranged(expr, false) else { return true };
+        let steps = steps(ranges.len());
+        let mut values = self.values.clone();
+        (0..LOOKS).any(|look| {
+            for ((variable, range), step) in ranges.iter().zip(&steps) {
+                let share = (0.5 + look as f64 * step).fract();
+                if let Some(variable) = variable.as_variable() {
+                    values[variable.index()] = range.lo + (range.hi - range.lo) * share;
+                }
+            }
+            self.graph.evaluate(&[expr], &values)[0].is_finite()
+        })
     }
 
     fn enclosed(&self, expr: Expr<'g>, decides: bool) -> Result<Interval, Unranged> {
@@ -469,12 +492,16 @@ impl<'g> Context<'g> {
         self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
     }
 
+    fn zero_divisors(&self, expr: Expr<'g>) -> impl Iterator<Item = Expr<'g>> {
+        let is_zero =
+            |divisor: &Expr<'g>| matches!(self.constant_kept(*divisor), Constant::Known(value) if value == 0.0);
+        self.graph.divisors(expr).into_iter().filter(is_zero)
+    }
+
     /// What an expression divides by that is zero, in the words of the text; nothing where that is not short.
     fn zero_divisor(&self, expr: Expr<'g>) -> Option<String> {
         const SHORT: usize = 12;
-        let is_zero =
-            |divisor: &Expr<'g>| matches!(self.constant_kept(*divisor), Constant::Known(value) if value == 0.0);
-        let found = self.graph.divisors(expr).into_iter().find(is_zero)?;
+        let found = self.zero_divisors(expr).next()?;
         (found.as_constant().is_none() && self.graph.size(&[found]) <= SHORT).then(|| found.to_string())
     }
 
@@ -597,12 +624,22 @@ fn with_unit_help(diagnostic: Diagnostic, wanted: Dimension, found: &Value<'_>) 
         }
         (Dimension::ANGLE | Dimension::LENGTH, Dimension::NUMBER) => {
             let (help, unit) = match (value, wanted) {
+                // what is no whole number of degrees may be radians
+                (Some(value), Dimension::ANGLE) if value.fract() != 0.0 && value.abs() < std::f64::consts::TAU => {
+                    (format!("give it a unit: `{value} deg`, or `{value} rad`"), "deg")
+                }
                 (Some(value), Dimension::ANGLE) => (format!("give it a unit: `{value} deg`"), "deg"),
                 (Some(value), _) => (format!("give it a unit: `{value} mm`"), "mm"),
                 (None, Dimension::ANGLE) => ("a number of radians becomes an angle by `* 1 rad`".to_string(), "rad"),
                 (None, _) => ("a number of millimetres becomes a length by `* 1 mm`".to_string(), "mm"),
             };
             diagnostic.help(help).rewriting(Rewriting::Unit(span, unit))
+        }
+        (Dimension::LENGTH, Dimension::ANGLE) => {
+            diagnostic.help("an angle becomes a length by a radius, or by a lead such as `10 mm/rev`, as a factor")
+        }
+        (Dimension::ANGLE, Dimension::LENGTH) => {
+            diagnostic.help("a length becomes an angle by a division by a radius, or by a lead such as `10 mm/rev`")
         }
         _ => diagnostic,
     }

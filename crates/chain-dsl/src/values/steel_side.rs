@@ -112,7 +112,7 @@ pub(crate) fn looked(tape: &LaneTape, values: &[f64], moving: &[Moving]) -> Seen
 
 /// How far, as a share of each range, one point lies from the one before, so that they fill all directions evenly, and none stands at the
 /// same part of a turn again and again: powers of the root of x^(d + 1) = x + 1, the golden ratio's sequence in d directions.
-fn steps(directions: usize) -> Vec<f64> {
+pub(crate) fn steps(directions: usize) -> Vec<f64> {
     let root = (0..32).fold(2.0_f64, |x, _| (1.0 + x).powf(1.0 / (directions + 1) as f64));
     (1..=directions).map(|k| root.powi(-(k as i32))).collect()
 }

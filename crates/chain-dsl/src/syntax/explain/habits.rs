@@ -49,6 +49,7 @@ impl Mistake<'_> {
             return None;
         }
         let what = match sign {
+            "(" if self.expected.contains(&Rule::open_brace) => return None,
             "(" => "call",
             "[" => "index",
             _ => return None,
@@ -89,6 +90,32 @@ impl Mistake<'_> {
         let statement = self.scan.say(self.range.start);
         let help = match (self.before(), self.say()) {
             ("*", "*") if self.touches(self.found) => "a power is written `a ^ b`",
+            ("..", ".") if self.touches(self.found) => "a range is written `a .. b`",
+            ("]", _) if wants(Rule::dots) => "a range is written `a .. b`",
+            (_, "by") if matches!(statement, "motion" | "unknown") => {
+                "a motion takes all values of its range; how many points are wanted stands in the `sample`"
+            }
+            (_, "(") if statement == "sample" && wants(Rule::open_brace) => {
+                "what is asked for stands between `{` and `}`: `sample flank { z: 0 mm .. 5 mm by 6, rho: 48 mm }`"
+            }
+            (_, "(") if matches!(statement, "machine" | "tool" | "job") && wants(Rule::open_brace) => {
+                "settings stand in the block: `param module : length = 4 mm`"
+            }
+            (_, "along") if statement == "axis" => {
+                "a frame says which way an axis moves it: `frame slide in bed = translate_y(Y)`"
+            }
+            (_, "=") if statement == "expect" && wants(Rule::kw_near) => {
+                "say how near a value must lie: `near value within 1 um`"
+            }
+            (_, _) if statement == "expect" && wants(Rule::kw_near) && (self.ends() || self.leads()) => {
+                "a bound is a range: `in low .. high`"
+            }
+            (_, _) if statement == "use" && self.scan.is_name(self.found) => {
+                "the name of a file stands between quotes: `use \"machines/hobbing.chain\"`"
+            }
+            (_, _) if statement == "sample" && wants(Rule::kw_by) && self.scan.is_name(self.found) => {
+                "`by` and how many points are wanted follow a range: `0 mm .. 5 mm by 6`"
+            }
             (_, ":") if wants(Rule::equals) && self.scan.say(self.found + 1) == "=" && self.touches(self.found + 1) => {
                 "a value is given with `=`"
             }
@@ -125,10 +152,10 @@ impl Mistake<'_> {
                 "transforms stand side by side, without a sign between them"
             }
             ("/", "*") if self.touches(self.found) => block_comment(self.scan, self.found - 1)?,
-            (_, "angle" | "rotation" | "rotational" | "revolute") if wants(Rule::axis_kind) => {
+            (_, "angle" | "rotation" | "rotational" | "revolute" | "deg" | "rad" | "rev") if wants(Rule::axis_kind) => {
                 "an axis that turns is `rotary`"
             }
-            (_, "length" | "translation" | "translational" | "prismatic") if wants(Rule::axis_kind) => {
+            (_, "length" | "translation" | "translational" | "prismatic" | "mm") if wants(Rule::axis_kind) => {
                 "an axis that slides is `linear`"
             }
             (_, ",") if wants(Rule::EOI) => "a statement ends without a sign",
@@ -147,6 +174,7 @@ impl Mistake<'_> {
         let before = |sign: &str| (self.range.start..self.found).rev().find(|at| self.scan.say(*at) == sign);
         let after = |sign: &str| (self.found..self.range.end).find(|at| self.scan.say(*at) == sign);
         let replaced = match (self.before(), self.say(), help) {
+            ("..", ".", _) => ("leave `.` out", self.place(), ""),
             ("*", "*", _) => ("write `^`", self.scan.extent(self.found - 1..self.found + 1), "^"),
             (_, ":", "a value is given with `=`") => ("write `=`", self.scan.extent(self.found..self.found + 2), "="),
             (_, "." | "to", "a range is written `a .. b`") => ("write `..`", self.place(), ".."),
@@ -158,8 +186,10 @@ impl Mistake<'_> {
             }
             (_, "=", "values are compared with `==`") => ("write `==`", self.place(), "=="),
             (_, "==", _) => ("write `=`", self.place(), "="),
-            (_, "angle" | "rotation" | "rotational" | "revolute", _) => ("write `rotary`", self.place(), "rotary"),
-            (_, "length" | "translation" | "translational" | "prismatic", _) => {
+            (_, "angle" | "rotation" | "rotational" | "revolute" | "deg" | "rad" | "rev", _) => {
+                ("write `rotary`", self.place(), "rotary")
+            }
+            (_, "length" | "translation" | "translational" | "prismatic" | "mm", _) => {
                 ("write `linear`", self.place(), "linear")
             }
             (")", "*", _) => ("leave `*` out", self.place(), ""),
@@ -238,13 +268,16 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
         let title = format!("write `{text}`");
         return Some(diagnostic.help(title.clone()).cure(title, whole, format!("{before}{text}{behind}")));
     }
-    let Some(help) = strange(sign) else { return Some(diagnostic) };
+    let is_percent = sign == "%" && index > 0 && matches!(scan.kind(index - 1), Some(Kind::Number));
+    let help = if is_percent { Some("a share is a number: `0.5`, or `50 / 100`") } else { strange(sign) };
+    let Some(help) = help else { return Some(diagnostic) };
     let diagnostic = diagnostic.help(help);
     Some(match sign {
         ";" => diagnostic.cure("leave `;` out", place, ""),
         "…" => diagnostic.cure("write `..`", place, " .. "),
         "\u{a0}" | "\u{2009}" | "\u{202f}" => diagnostic.cure(help, place, " "),
         "#" => diagnostic.cure("write `//`", place, "//"),
+        "%" if is_percent => diagnostic.cure("write `/ 100`", place, " / 100"),
         "%" if scan.indent(index).is_some() => diagnostic.cure("write `//`", place, "//"),
         "√" if scan.say(index + 1) == "(" => diagnostic.cure("write `sqrt`", place, "sqrt"),
         "√" if matches!(scan.kind(index + 1), Some(Kind::Word | Kind::Number)) => {
@@ -334,6 +367,8 @@ fn strange(sign: &str) -> Option<&'static str> {
         "#" | "%" => "a comment begins with `//`",
         "…" => "a range is written `a .. b`",
         "√" => "write `sqrt(x)`",
+        "±" => "a range is written `-a .. a`, and by how much a value may differ, `within a`",
+        "≈" | "≃" | "≅" | "~" => "an expectation compares by `near`: `near 1.6 mm within 1 um`",
         _ => return None,
     })
 }

@@ -1,6 +1,7 @@
 //! Words that are no units, and units and other words that are no names.
 
 use crate::diagnostics::Diagnostic;
+use crate::diagnostics::source::Span;
 use crate::diagnostics::spelling::closest;
 
 use super::super::expected;
@@ -36,7 +37,14 @@ impl<'s> Mistake<'s> {
         let is_whole = of_settings && matches!(self.say(), ")" | ",") && self.expected.contains(&Rule::colon);
         let is_first = is_whole && matches!(self.scan.say(before.wrapping_sub(1)), "(" | ",");
         let name = self.scan.say(before);
-        is_first.then(|| self.unexpected().writing(self.scan.place(before), &format!("{name}: {name}")))
+        is_first.then(|| {
+            let written = format!("{name}: {name}");
+            self.unexpected()
+                .help(format!(
+                    "settings are given by their names, as in `name: value`; `{written}` where one has this name"
+                ))
+                .cure(format!("write `{written}`"), self.scan.place(before), written)
+        })
     }
 
     /// The units of the dimension that is declared before a number, where nothing but the number can be of it; all of them elsewhere.
@@ -68,11 +76,24 @@ impl<'s> Mistake<'s> {
             return None;
         }
         let fitting = self.units_that_fit();
+        let is_value = !(ELSEWHERE.contains(&self.say()) || self.touches(self.found) && is_part_of_number(self.say()));
+        let product = match is_value {
+            true => format!(
+                "; a product is written `{} * {}`",
+                self.scan.short(self.found - 1),
+                self.scan.short(self.found)
+            ),
+            false => String::new(),
+        };
         let help = match like {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => format!("the units are {}", fitting.join(", ")),
+            None => format!("the units are {}{product}", fitting.join(", ")),
         };
-        let diagnostic = self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help);
+        let mut diagnostic = self.here(format!("{} is not a unit", self.scan.quote(self.found))).help(help);
+        if like.is_none() && is_value {
+            let gap = Span { end: self.place().start, ..self.behind(self.found - 1) };
+            diagnostic = diagnostic.cure("write `*`", gap, " * ");
+        }
         Some(match like {
             Some(meant) => diagnostic.cure(format!("write `{meant}`"), self.place(), meant),
             None => fitting
@@ -146,6 +167,16 @@ fn dimension_of(unit: &str) -> &'static str {
         "deg" | "rad" | "arcmin" | "arcsec" | "rev" => "angle",
         _ => "length",
     }
+}
+
+/// Units that the language does not have: no names of values.
+const ELSEWHERE: [&str; 8] = ["m", "km", "dm", "nm", "gon", "rpm", "s", "min"];
+
+/// `e`, `x10`: what other languages write behind the first digits of a number.
+fn is_part_of_number(word: &str) -> bool {
+    let mut letters = word.chars();
+    letters.next().is_some_and(|first| matches!(first, 'e' | 'E' | 'x' | 'X'))
+        && letters.all(|of| of.is_ascii_hexdigit())
 }
 
 /// The unit whose letters came in another order.

@@ -198,7 +198,12 @@ impl<'s> Recover<'s> {
             return self.item(self.scan.say(self.at + 1), false);
         }
         let word = self.scan.kind(self.at) == Some(Kind::Word);
-        let meant = closest(self.say(), words::ITEMS.iter().copied()).filter(|_| word);
+        let of_others = match self.say() {
+            "import" | "include" => Some("use"),
+            "def" | "func" | "function" => Some("fn"),
+            _ => None,
+        };
+        let meant = of_others.or_else(|| closest(self.say(), words::ITEMS.iter().copied()).filter(|_| word));
         let Some(meant) = meant else {
             self.lacks_files |= [0, 1].iter().any(|k| self.scan.kind(self.at + k) == Some(Kind::Text));
             self.report_sign(LIST, "a file consists of machines, tools, jobs and functions");
