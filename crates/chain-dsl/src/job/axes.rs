@@ -75,6 +75,9 @@ impl<'g> Builder<'_, 'g> {
         }
         let value =
             axis.dimension.zip(law).and_then(|(dimension, law)| context.scalar(law, &self.scope, dimension, &what));
+        if let Some(law) = law.filter(|_| value.is_none()) {
+            help_with_leads(context, law.span, axis.dimension);
+        }
         let value = value.filter(|_| is_known);
         let key = (machine, member.node.clone());
         if let Some(first) = self.drives.get(&key) {
@@ -239,6 +242,18 @@ impl<'g> Builder<'_, 'g> {
             .map(|axis| (axis.variable, axis.law))
             .collect();
     }
+}
+
+/// Says how lengths and angles become each other where a law is the one for the other.
+fn help_with_leads(context: &mut Context<'_>, law: Span, dimension: Option<Dimension>) {
+    let help = match dimension {
+        Some(Dimension::LENGTH) => {
+            "an angle becomes a length as a factor of a radius, or of a lead such as `10 mm/rev`"
+        }
+        Some(Dimension::ANGLE) => "a length becomes an angle divided by a radius, or by a lead such as `10 mm/rev`",
+        _ => return,
+    };
+    context.help_on((Code::WrongDimension, law), help);
 }
 
 impl<'g> Builder<'_, 'g> {

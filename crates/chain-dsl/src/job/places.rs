@@ -20,15 +20,16 @@ impl<'g> Builder<'_, 'g> {
         if self.unsettled.contains(&frame.0) {
             return true;
         }
-        for (name, steps) in path {
+        let mut from = &self.frame_name(frame);
+        for (to, steps) in path {
             let written: Vec<Expr<'g>> = steps.iter().flat_map(|step| parts(*step)).collect();
             let driven = context.graph.substitute(&written, &self.laws);
-            let Some((part, value)) = driven.iter().find_map(|part| Some((*part, context.nowhere(*part)?))) else {
-                continue;
-            };
-            context.not_finite(value, Some(part), named, format!("where `{name}` stands"));
-            self.unsettled.insert(frame.0);
-            return false;
+            if let Some((part, value)) = driven.iter().find_map(|part| Some((*part, context.nowhere(*part)?))) {
+                context.not_finite(value, Some(part), named, format!("what stands between `{from}` and `{to}`"));
+                self.unsettled.insert(frame.0);
+                return false;
+            }
+            from = to;
         }
         true
     }

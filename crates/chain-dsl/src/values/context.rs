@@ -384,6 +384,14 @@ impl<'g> Context<'g> {
         }
     }
 
+    /// Says what to write in a finding about just one place, if it does not.
+    pub(crate) fn help_on(&mut self, (code, place): (Code, Span), help: &str) {
+        let is_meant = |found: &&mut Diagnostic| found.code == code && found.span == place && found.help.is_none();
+        if let Some(found) = self.diagnostics.iter_mut().find(is_meant) {
+            found.help = Some(help.to_string());
+        }
+    }
+
     /// Says what to write in those findings, from a number of them on, that do not.
     pub(crate) fn help_since(&mut self, first: usize, help: &str) {
         for diagnostic in self.diagnostics[first..].iter_mut().filter(|diagnostic| diagnostic.help.is_none()) {
@@ -634,12 +642,6 @@ fn with_unit_help(diagnostic: Diagnostic, wanted: Dimension, found: &Value<'_>) 
                 (None, _) => ("a number of millimetres becomes a length by `* 1 mm`".to_string(), "mm"),
             };
             diagnostic.help(help).rewriting(Rewriting::Unit(span, unit))
-        }
-        (Dimension::LENGTH, Dimension::ANGLE) => {
-            diagnostic.help("an angle becomes a length by a radius, or by a lead such as `10 mm/rev`, as a factor")
-        }
-        (Dimension::ANGLE, Dimension::LENGTH) => {
-            diagnostic.help("a length becomes an angle by a division by a radius, or by a lead such as `10 mm/rev`")
         }
         _ => diagnostic,
     }

@@ -91,30 +91,30 @@ impl Mistake<'_> {
         let help = match (self.before(), self.say()) {
             ("*", "*") if self.touches(self.found) => "a power is written `a ^ b`",
             ("..", ".") if self.touches(self.found) => "a range is written `a .. b`",
-            ("]", _) if wants(Rule::dots) => "a range is written `a .. b`",
+            ("]", _) if wants(Rule::dots) => "a range has no brackets, as in `-40 deg .. 40 deg`",
             (_, "by") if matches!(statement, "motion" | "unknown") => {
                 "a motion takes all values of its range; how many points are wanted stands in the `sample`"
             }
             (_, "(") if statement == "sample" && wants(Rule::open_brace) => {
-                "what is asked for stands between `{` and `}`: `sample flank { z: 0 mm .. 5 mm by 6, rho: 48 mm }`"
+                "what is asked for stands between `{` and `}`, as in `sample flank { z: 0 mm .. 5 mm by 6, rho: 48 mm }`"
             }
             (_, "(") if matches!(statement, "machine" | "tool" | "job") && wants(Rule::open_brace) => {
-                "settings stand in the block: `param module : length = 4 mm`"
+                "settings stand in the block, as in `param module : length = 4 mm`"
             }
             (_, "along") if statement == "axis" => {
-                "a frame says which way an axis moves it: `frame slide in bed = translate_y(Y)`"
+                "a frame says which way an axis moves it, as in `frame slide in bed = translate_y(Y)`"
             }
             (_, "=") if statement == "expect" && wants(Rule::kw_near) => {
-                "say how near a value must lie: `near value within 1 um`"
+                "say how near the value must lie, as in `near 3 mm within 1 um`"
             }
             (_, _) if statement == "expect" && wants(Rule::kw_near) && (self.ends() || self.leads()) => {
-                "a bound is a range: `in low .. high`"
+                "a bound is a range, as in `in 2 mm .. 3 mm`"
             }
             (_, _) if statement == "use" && self.scan.is_name(self.found) => {
-                "the name of a file stands between quotes: `use \"machines/hobbing.chain\"`"
+                "the name of a file stands between quotes, as in `use \"machines/hobbing.chain\"`"
             }
             (_, _) if statement == "sample" && wants(Rule::kw_by) && self.scan.is_name(self.found) => {
-                "`by` and how many points are wanted follow a range: `0 mm .. 5 mm by 6`"
+                "`by` and how many points are wanted follow a range, as in `0 mm .. 5 mm by 6`"
             }
             (_, ":") if wants(Rule::equals) && self.scan.say(self.found + 1) == "=" && self.touches(self.found + 1) => {
                 "a value is given with `=`"
@@ -269,7 +269,7 @@ pub(in super::super) fn foreign(scan: &Scan, index: usize) -> Option<Diagnostic>
         return Some(diagnostic.help(title.clone()).cure(title, whole, format!("{before}{text}{behind}")));
     }
     let is_percent = sign == "%" && index > 0 && matches!(scan.kind(index - 1), Some(Kind::Number));
-    let help = if is_percent { Some("a share is a number: `0.5`, or `50 / 100`") } else { strange(sign) };
+    let help = if is_percent { Some("a share is a number, as in `0.5`") } else { strange(sign) };
     let Some(help) = help else { return Some(diagnostic) };
     let diagnostic = diagnostic.help(help);
     Some(match sign {
@@ -367,8 +367,10 @@ fn strange(sign: &str) -> Option<&'static str> {
         "#" | "%" => "a comment begins with `//`",
         "…" => "a range is written `a .. b`",
         "√" => "write `sqrt(x)`",
-        "±" => "a range is written `-a .. a`, and by how much a value may differ, `within a`",
-        "≈" | "≃" | "≅" | "~" => "an expectation compares by `near`: `near 1.6 mm within 1 um`",
+        "±" => {
+            "a range names both ends, as in `-40 deg .. 40 deg`; by how much a value may differ stands behind `within`"
+        }
+        "≈" | "≃" | "≅" | "~" => "an expectation compares by `near`, as in `near 1.6 mm within 1 um`",
         _ => return None,
     })
 }
