@@ -130,6 +130,7 @@ impl Mistake<'_> {
             (_, "=") if wants(Rule::close_paren) && self.scan.is_name(self.found - 1) => {
                 "an argument gets its value with `:`"
             }
+            (_, "in") if self.is_inch() => "an inch is written `inch`",
             (_, "in") if statement == "param" && wants(Rule::infix) && !wants(Rule::dots) => {
                 "the range stands before the value: write `in low .. high = value`"
             }
@@ -168,6 +169,12 @@ impl Mistake<'_> {
         })
     }
 
+    /// `0.5 in` at the end of a line.
+    fn is_inch(&self) -> bool {
+        let is_last = self.found + 1 >= self.range.end || self.scan.indent(self.found + 1).is_some();
+        self.say() == "in" && self.kind_before() == Some(Kind::Number) && is_last
+    }
+
     /// The change that such a help asks for, where the text to write follows from what stands there.
     fn sign_here(&self, help: &str) -> Option<(&'static str, Span, String)> {
         let text = |span: Span| &self.scan.text[span.start as usize..span.end as usize];
@@ -201,6 +208,7 @@ impl Mistake<'_> {
                 let end = self.behind(after("=")? - 1);
                 ("leave the dimension out", Span { start: self.behind(self.found - 1).start, ..end }, "")
             }
+            (_, "in", _) if self.is_inch() => ("write `inch`", self.place(), "inch"),
             (_, "in", _) => {
                 let equals = before("=")?;
                 let [value, range] =

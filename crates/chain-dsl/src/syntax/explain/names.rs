@@ -71,12 +71,14 @@ impl<'s> Mistake<'s> {
             && self.scan.is_name(self.found)
             && self.scan.say(self.found + 1) != ":"
             && self.expected.iter().any(|rule| matches!(rule, Rule::unit_word | Rule::infix));
+        let is_elsewhere = ELSEWHERE.contains(&self.say());
         let like = closest(self.say(), words::UNITS.iter().copied()).or_else(|| of_same_letters(self.say()));
+        let like = like.filter(|_| !is_elsewhere);
         if !unit || like.is_none() && self.misspelt(&expected::relevant(self.expected.clone())).is_some() {
             return None;
         }
         let fitting = self.units_that_fit();
-        let is_value = !(ELSEWHERE.contains(&self.say()) || self.touches(self.found) && is_part_of_number(self.say()));
+        let is_value = !(is_elsewhere || self.touches(self.found) && is_part_of_number(self.say()));
         let product = match is_value {
             true => format!(
                 "; a product is written `{} * {}`",
