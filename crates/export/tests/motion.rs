@@ -360,7 +360,7 @@ fn each_control_has_its_words() {
     let fanuc = program(&table, Dialect::Fanuc);
     assert!(fanuc.starts_with("%\nO0001\n(JOB PINION, FOR FANUC)\n") && fanuc.ends_with("N70 M30\n%\n"), "{fanuc}");
     let linuxcnc = program(&table, Dialect::LinuxCnc);
-    assert!(linuxcnc.contains("\nG21 G17 G90 G40 G49 G80 G94 G64 P0.00001 Q0\nG00 X"), "{linuxcnc}");
+    assert!(linuxcnc.contains("\nG21 G17 G90 G40 G49 G80 G94 G54 G64 P0.00001 Q0\nG00 X"), "{linuxcnc}");
     let heidenhain = program(&table, Dialect::Heidenhain);
     assert!(heidenhain.starts_with("BEGIN PGM FLANK MM\n; job pinion, for Heidenhain\n"), "{heidenhain}");
     assert!(heidenhain.contains(" R0 FMAX\nL X") && heidenhain.ends_with("\nM30\nEND PGM FLANK MM\n"), "{heidenhain}");

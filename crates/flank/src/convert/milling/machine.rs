@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Axis, Job, LawSource, Machine as JobMachine, Milling};
 use flank_expr::Expr;
+use flank_expr::geometry::Chain;
 use flank_solver::{MillAxes, NotExplicit, PoseSeries};
 use nalgebra::{Matrix3, Vector3};
 
@@ -32,6 +33,8 @@ pub(super) struct Machine<'p, 'g> {
     pub(super) free: Vec<&'p Axis<'g>>,
     /// The same in numbers.
     pub(super) axes: FreeAxes,
+    /// The cutter in the work, in the free axes.
+    pub(super) chain: Chain<'g>,
     /// From the work to the cutter it makes a mirror image.
     is_mirrored: bool,
 }
@@ -77,7 +80,7 @@ impl<'p, 'g> Machine<'p, 'g> {
             is_rotary: free.iter().map(|axis| units::is_angle(axis.dimension)).collect(),
             travels: free.iter().map(|axis| axis.travel).collect(),
         };
-        Ok(Machine { machine, free, axes, is_mirrored: is_mirrored(&milling.t_work_tool) })
+        Ok(Machine { machine, free, axes, chain, is_mirrored: is_mirrored(&milling.t_work_tool) })
     }
 
     /// The same on the elbow on which these poses stay within the travels, and turn less.

@@ -2,6 +2,7 @@
 
 mod block;
 pub(crate) mod clamp;
+mod control;
 mod cutter;
 pub(crate) mod drawn;
 mod files;
