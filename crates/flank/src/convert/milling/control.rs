@@ -159,7 +159,7 @@ impl Control {
         let slides = carried(&self.of_work, Vector3::from(words)) - carried(&self.of_spindle, Vector3::zeros());
         let mut found = row.to_vec();
         for (axis, slide) in self.linear.into_iter().zip(slides.iter()) {
-            found[axis] = self.from_zero(axis, *slide);
+            found[axis] = self.position(axis, *slide);
         }
         found
     }
@@ -173,7 +173,7 @@ impl Control {
     }
 
     /// Where an axis stands while its word, counted from the zero of the work, says so.
-    pub(super) fn from_zero(&self, axis: usize, word: f64) -> f64 {
+    pub(super) fn position(&self, axis: usize, word: f64) -> f64 {
         self.zero[axis] + self.signs[axis] * word
     }
 

@@ -254,7 +254,7 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
         let is_rotary = self.machine.axes.is_rotary(axis);
         let programmed = if is_rotary { word.value.to_radians() } else { word.value * self.unit };
         let position = match &self.control {
-            Some(control) if !is_rotary => control.from_zero(axis, programmed),
+            Some(control) if !is_rotary => control.position(axis, programmed),
             _ if own.reversed => own.offset - programmed,
             _ => programmed - own.offset,
         };
