@@ -77,6 +77,7 @@ fn words_of_the_tip_are_along_the_axes_of_the_machine() {
     let trunnion = "frame trunnion in bed = rotate_y(12.5 deg) rotate_x(A)";
     let askew = "frame clamped in work = translate_z(60 mm) rotate_y(12.5 deg)";
     let head = "nc B = B + 10 deg\nnc C = -C - 30 deg\nframe clamped in work = translate_z(60 mm) rotate_x(20 deg)";
+    let swivel = "nc B = 15 deg - B\nnc C = C\nframe clamped in work = translate_z(60 mm) rotate_x(20 deg)";
     let offset = "nc C = 90 deg - C\nframe clamped in work = translate(5 mm, 6 mm, 60 mm)";
     let swung = "nc A = A + 20 deg\nnc C = C\nframe clamped in work = translate(5 mm, 6 mm, 60 mm)";
     let table = "five_axis_table_table";
@@ -86,6 +87,7 @@ fn words_of_the_tip_are_along_the_axes_of_the_machine() {
         (table, swung, "clamped", turn(0, -20.0)),
         (table, trunnion, "work", turn(1, 12.5)),
         ("five_axis_head_table", head, "clamped", product(turn(2, -30.0), turn(0, 20.0))),
+        ("five_axis_head_table", swivel, "clamped", turn(0, 20.0)),
     ];
     for (machine, variant, frame, turned) in cases {
         let spec = written(&out, "milled.chain", &job(machine, variant, frame, "lead 5 deg\n tilt 75 deg"));
