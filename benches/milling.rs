@@ -184,7 +184,6 @@ fn program_20000(bencher: Bencher) {
         home: (2, 200.0),
         end: None,
         is_upright: true,
-        zero: (String::new(), vec![0.0; 5]),
         passes: (0..rows.len() / POSITIONS[1]).map(pass).collect(),
         feed: 600.0,
         spindle: None,

@@ -1,6 +1,8 @@
 //! `flank mill`: programs that it writes are read back, by it and by LinuxCNC's interpreter, and what cannot be milled is told with its
 //! place.
 
+#[path = "mill/control.rs"]
+mod control;
 #[path = "mill/dexels.rs"]
 mod dexels;
 #[path = "mill/pair.rs"]

@@ -82,7 +82,7 @@ pub use measuring::{
 };
 pub use motion::{
     AxisSeries, Dialect, MachineAxis, MotionRow, MotionTable, NcError, PassProgram, ProgramPass, ProgramRapid, Rates,
-    Series, WordsOf, write_motion_csv, write_motion_json, write_nc, write_passes,
+    Series, TipFrame, TipTurn, WordsOf, write_motion_csv, write_motion_json, write_nc, write_passes,
 };
 pub use points::bands::{Banded, Surfaces, Taker};
 pub use points::conventions::sentences as conventions;

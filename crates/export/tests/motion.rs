@@ -355,14 +355,16 @@ fn each_control_has_its_words() {
     let siemens = program(&table, Dialect::Siemens840D);
     assert!(siemens.contains("N30 G93 FNORM\nN40 G01 X"), "{siemens}");
     assert!(siemens.contains(" B2=17."), "{siemens}");
+    assert!(siemens.contains("; - zero [G54]: where") && siemens.contains(" G54 "), "{siemens}");
     assert!(siemens.starts_with("; ") && siemens.ends_with("N70 M30\n"), "{siemens}");
     table.axes[4].address = "B".into();
     let fanuc = program(&table, Dialect::Fanuc);
     assert!(fanuc.starts_with("%\nO0001\n(JOB PINION, FOR FANUC)\n") && fanuc.ends_with("N70 M30\n%\n"), "{fanuc}");
     let linuxcnc = program(&table, Dialect::LinuxCnc);
-    assert!(linuxcnc.contains("\nG21 G17 G90 G40 G49 G80 G94 G64 P0.00001 Q0\nG00 X"), "{linuxcnc}");
+    assert!(linuxcnc.contains("\nG21 G17 G90 G40 G49 G80 G94 G54 G64 P0.00001 Q0\nG00 X"), "{linuxcnc}");
     let heidenhain = program(&table, Dialect::Heidenhain);
     assert!(heidenhain.starts_with("BEGIN PGM FLANK MM\n; job pinion, for Heidenhain\n"), "{heidenhain}");
+    assert!(heidenhain.contains("; - datum, the preset that is active") && !heidenhain.contains("G54"), "{heidenhain}");
     assert!(heidenhain.contains(" R0 FMAX\nL X") && heidenhain.ends_with("\nM30\nEND PGM FLANK MM\n"), "{heidenhain}");
 }
 

@@ -63,7 +63,7 @@ pub use conversion::tube::{Tube, Unproven};
 pub use equations::solution::{CutBy, Outcome, Range, Solution};
 pub use equations::system::System;
 pub use equations::tolerance::TOLERANCE;
-pub use milling::axes::MillAxes;
+pub use milling::axes::{MillAxes, NoMillAxes};
 pub use milling::clear::{Clear, ClearProof};
 pub use milling::cusp::{Cusp, cusp, left_by_block, lowest_beside, peak};
 pub use milling::distance::{Nearest, Obstacle, ToolBody};

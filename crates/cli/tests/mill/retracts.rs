@@ -167,6 +167,14 @@ fn tool_centre_control_has_one_zero() {
             "{head}"
         );
         assert!(head.contains("length"), "{head}");
+        // Klartext has no word for a zero
+        let calls_zero = blocks.iter().any(|line| line.split(' ').any(|word| word == "G54"));
+        let [zero, preset] = ["zero [g54]", "datum, the preset that is active"].map(|of| head.contains(of));
+        assert_eq!(
+            [calls_zero, zero, preset],
+            [control != "heidenhain", control != "heidenhain", control == "heidenhain"],
+            "{head}"
+        );
         let (code, _, told) = mill(&spec, &out, &["--tcp", "--verify", program.to_str().unwrap()]);
         assert_eq!(code, 0, "{told}");
     }

@@ -102,6 +102,22 @@ fn blocks_leave_what_evenly_turning_axes_leave() {
     }
 }
 
+/// No pass leaves more than the chord error: also where those that are looked at first lean less.
+#[test]
+fn no_pass_leaves_more_than_the_chord_error() {
+    let out = folder("mill_tip_passes");
+    let spec = job(
+        "face with ball.cutting in mill.work {\n passes v: -1 mm .. 1 mm, step 0.1 mm\n along u: -15 mm .. 15 mm, chord 0.5 um\n \
+                    lead 10 deg * (u / 15 mm) * (1 + 0.5 * sin(360 deg * v / 1 mm))\n tilt 75 deg",
+    );
+    let found = json(&written(&out, "milled.chain", &spec), &out, &["--tcp"]);
+    let told = found["blocks"][0]["height_um"].as_f64().expect("a height");
+    let off =
+        along_blocks(&out.join("milled.part.csv")).into_iter().map(|[tip, axis]| -tip[0] - RADIUS * (1.0 + axis[0]));
+    let left = 1e3 * off.fold(0.0, f64::max);
+    assert!(left <= 0.5 && told <= 0.5 && (told - left).abs() < 0.005, "{told} {left}");
+}
+
 /// Its holder swings nearer to a stop between the positions than at them: a clearance is proven up to where it comes, and not beyond.
 #[test]
 fn clearances_are_proven_while_axes_turn_evenly() {

@@ -71,15 +71,37 @@ impl Dialect {
         }
     }
 
-    /// The block that settles how words are meant: metric, absolute, no compensation, no cycle.
+    /// The block that settles how words are meant: metric, absolute, no compensation, no cycle, from the first zero.
     pub(super) fn settling(self, least_increment: &str) -> Option<String> {
         match self {
-            Dialect::Fanuc => Some("G21 G17 G90 G40 G49 G80 G94".to_owned()),
-            Dialect::Siemens840D => Some("G710 G17 G90 G40 G94 G64".to_owned()),
+            Dialect::Fanuc => Some("G21 G17 G90 G40 G49 G80 G94 G54".to_owned()),
+            Dialect::Siemens840D => Some("G710 G17 G90 G40 G94 G54 G64".to_owned()),
             // along the path as close as positions are written, without leaving out positions
-            Dialect::LinuxCnc => Some(format!("G21 G17 G90 G40 G49 G80 G94 G64 P{least_increment} Q0")),
+            Dialect::LinuxCnc => Some(format!("G21 G17 G90 G40 G49 G80 G94 G54 G64 P{least_increment} Q0")),
             // its first block says metric, `L` is absolute, and `R0` stands in the rapids
             Dialect::Heidenhain => None,
+        }
+    }
+
+    /// What positions count from, for people.
+    pub(super) fn zero(self) -> &'static str {
+        match self {
+            Dialect::Fanuc | Dialect::Siemens840D | Dialect::LinuxCnc => "zero [G54]",
+            // it has presets, which cycle 247 calls by the row of a table
+            Dialect::Heidenhain => "datum, the preset that is active, since no block calls one",
+        }
+    }
+
+    /// A line of the head: that they count from where the axes do.
+    pub(super) fn zero_of_axes(self) -> String {
+        format!("- {}: where the axes of the machine count from", self.zero())
+    }
+
+    /// What has to be set so that words of the tip go with the work, behind a sentence that says so.
+    pub(super) fn frame_of_tip(self) -> &'static str {
+        match self {
+            Dialect::Fanuc => ": bit WKP of parameter 19696 is 0",
+            Dialect::Siemens840D | Dialect::LinuxCnc | Dialect::Heidenhain => "",
         }
     }
 

@@ -6,6 +6,7 @@ mod json;
 mod nc;
 mod passes;
 mod table;
+mod tip;
 
 pub use self::csv::write_motion_csv;
 pub use dialect::Dialect;
@@ -14,3 +15,4 @@ pub use json::write_motion_json;
 pub use nc::{NcError, write_nc};
 pub use passes::{PassProgram, ProgramPass, ProgramRapid, WordsOf, write_passes};
 pub use table::{AxisSeries, MachineAxis, MotionRow, MotionTable, Rates, Series};
+pub use tip::{TipFrame, TipTurn};

@@ -202,6 +202,7 @@ fn head(table: &MotionTable, dialect: Dialect, cutting_time: f64) -> Vec<String>
             .map(|sentence| format!("- {sentence}")),
     );
     head.push("- no rotary axis may roll over, positions are absolute".to_owned());
+    head.push(dialect.zero_of_axes());
     head.push("- the first block is a rapid of all axes to the first position".to_owned());
     head.push(format!("- cutting time {} s, {}", shortest(cutting_time), dialect.feed_kind()));
     let ends = [table.rows.first(), table.rows.last()].map(|row| row.map_or(0.0, |row| row.motion));

@@ -5,13 +5,12 @@ use std::io::Write;
 use super::dialect::Dialect;
 use super::nc::{NcError, axis_word, block_length, check_axes, extent_line, push_axis_word};
 use super::table::MachineAxis;
+use super::tip::TipFrame;
 use crate::files::error::WriteError;
 use crate::points::dataset::Header;
 use crate::text::number::{fixed, push_fixed, shortest};
 use crate::text::one_line;
 
-/// Decimals of tips in the work, mm.
-const DECIMALS_OF_TIPS: usize = 4;
 /// The least feed of a tip, mm/min: one decimal of it is written.
 const LEAST_FEED: f64 = 0.1;
 /// Letters of a block, about.
@@ -34,8 +33,6 @@ pub struct PassProgram {
     pub end: Option<(usize, f64)>,
     /// Whether the spindle points along one axis all the time: rotary axes may then turn while the others stand.
     pub is_upright: bool,
-    /// The frame of the work, and where the axes stand with the tip in its zero and rotary axes at zero.
-    pub zero: (String, Vec<f64>),
     /// Of the contact along the surface, mm/min.
     pub feed: f64,
     /// Revolutions of the cutter a minute.
@@ -45,12 +42,12 @@ pub struct PassProgram {
 }
 
 /// What the words of cutting blocks are of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum WordsOf {
     /// All axes, with inverse-time feed where the control has it.
     Axes,
-    /// The tip in the work, and the rotary axes: the control keeps the tip on its way (tool-centre control).
-    Tip,
+    /// The tip in a frame that goes with the work, and the rotary axes: the control keeps the tip on its way (tool-centre control).
+    Tip(TipFrame),
 }
 
 /// A pass.
@@ -62,7 +59,7 @@ pub struct ProgramPass {
     pub approach: Vec<ProgramRapid>,
     /// The positions of the axes: where the cutter comes down to, the positions on the surface, where it is lifted to; mm and radians.
     pub rows: Vec<Vec<f64>>,
-    /// The tips there, in the work, mm.
+    /// The tips there, in the frame of words of the tip, mm.
     pub tips: Vec<[f64; 3]>,
     /// The way of the contact to each row but the first, of the tip down to the surface and up from it, mm.
     pub ways: Vec<f64>,
@@ -75,7 +72,7 @@ pub struct ProgramPass {
 pub struct ProgramRapid {
     /// The positions of all axes at its end; mm and radians.
     pub row: Vec<f64>,
-    /// The tip there, in the work, mm.
+    /// The tip there, in the frame of words of the tip, mm.
     pub tip: [f64; 3],
     /// The axes that move.
     pub moves: Vec<usize>,
@@ -126,14 +123,17 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
     ];
     head.extend(header.conventions.iter().map(|sentence| format!("- {}", one_line(sentence))));
     head.push("- lengths in mm, angles in degrees; positions are absolute, no rotary axis may roll over".to_owned());
-    match program.words {
+    match &program.words {
         WordsOf::Axes => {
             head.push("- words are positions of the axes, counted as the control does; X Y Z of the tip".to_owned());
             head.push(format!("- F of cutting blocks: {}", dialect.feed_kind()));
-            head.push("- zero [G54]: where the axes of the machine count from".to_owned());
+            head.push(dialect.zero_of_axes());
             head.push(format!("- tool length as in the spec, no length is added: {}", dialect.length_of_axes()));
         }
-        WordsOf::Tip => head.extend(tip_zero(program, dialect)),
+        WordsOf::Tip(frame) => {
+            let sentences = frame.sentences(&program.axes, dialect);
+            head.extend(sentences.into_iter().map(|sentence| format!("- {sentence}")));
+        }
     }
     if !program.is_upright {
         head.push(format!("- in rapids all axes go straight and arrive together{}", dialect.straight_rapids()));
@@ -150,25 +150,6 @@ fn head(program: &PassProgram, dialect: Dialect) -> Vec<String> {
         head.push(extent_line(axis, ends));
     }
     head
-}
-
-/// What the zero and the tool have to be, where words are the tip in the work.
-fn tip_zero(program: &PassProgram, dialect: Dialect) -> Vec<String> {
-    let (frame, row) = &program.zero;
-    let at = |is_rotary: bool| {
-        let some = program.axes.iter().zip(row).filter(move |(axis, _)| axis.is_rotary == is_rotary);
-        some.map(|(axis, position)| dialect.word(&axis.address, &axis.printed(*position))).collect::<Vec<_>>().join(" ")
-    };
-    vec![
-        "- X Y Z are the tip in the work, of rapids, too; rotary words are positions of the axes".to_owned(),
-        format!(
-            "- zero [G54]: the origin of {frame}; with {} it lies at {} of the machine as the spec counts",
-            at(true),
-            at(false)
-        ),
-        format!("- {} are positions of the machine itself, at the end of a travel", dialect.of_machine()),
-        format!("- {}", dialect.length_of_tip()),
-    ]
 }
 
 struct Blocks<'p> {
@@ -216,7 +197,7 @@ impl Blocks<'_> {
         let word = axis_word(axis, position, self.dialect, &|| "the clearance plane".to_owned())?;
         self.out.push(match self.program.words {
             WordsOf::Axes => self.dialect.rapid(&word),
-            WordsOf::Tip => self.dialect.rapid_of_machine(&word),
+            WordsOf::Tip(_) => self.dialect.rapid_of_machine(&word),
         });
         Ok(())
     }
@@ -235,10 +216,10 @@ impl Blocks<'_> {
         let of = |keep: &dyn Fn(usize) -> bool| {
             rapid.moves.iter().filter(|axis| keep(**axis)).map(|axis| axes[*axis].clone()).collect::<Vec<_>>()
         };
-        if self.program.words == WordsOf::Axes {
+        let WordsOf::Tip(frame) = &self.program.words else {
             self.out.push(self.dialect.rapid(&of(&|_| true).join(" ")));
             return Ok(());
-        }
+        };
         let mut rotary = of(&|axis| self.program.axes[axis].is_rotary);
         // a spindle that leans swings about its axes unless the control keeps its tip where it is
         if !rotary.is_empty() && (self.program.is_upright || !self.is_positioned) {
@@ -248,7 +229,7 @@ impl Blocks<'_> {
         }
         self.tip_control(true);
         self.is_positioned = true;
-        let words: Vec<String> = self.words_of_tip(rapid.tip).into_iter().chain(rotary).collect();
+        let words: Vec<String> = self.words_of_tip(frame, rapid.tip).into_iter().chain(rotary).collect();
         self.out.push(self.dialect.rapid(&words.join(" ")));
         Ok(())
     }
@@ -258,7 +239,7 @@ impl Blocks<'_> {
         self.out.extend(self.dialect.remark(&pass.name));
         pass.approach.iter().try_for_each(|rapid| self.rapid(rapid, &pass.name))?;
         let (straight, _) = self.dialect.straight();
-        match program.words {
+        match &program.words {
             WordsOf::Axes => {
                 let inverse_time = self.dialect.inverse_time();
                 self.out.extend(inverse_time.map(|[on, _]| on.to_owned()));
@@ -272,9 +253,9 @@ impl Blocks<'_> {
                 }
                 self.out.extend(inverse_time.map(|[_, off]| off.to_owned()));
             }
-            WordsOf::Tip => {
+            WordsOf::Tip(frame) => {
                 for row in 1..pass.rows.len() {
-                    let words = self.tip_words(pass, row)?;
+                    let words = self.tip_words(frame, pass, row)?;
                     self.out.push(format!("{straight} {words} F{}", fixed(self.feed_of_tip(pass, row), 1)));
                 }
             }
@@ -298,16 +279,17 @@ impl Blocks<'_> {
         axes.map(|(axis, position)| axis_word(axis, *position, self.dialect, place)).collect()
     }
 
-    fn words_of_tip(&self, tip: [f64; 3]) -> Vec<String> {
-        let words = ["X", "Y", "Z"].into_iter().zip(tip);
-        words.map(|(address, at)| self.dialect.word(address, &fixed(at, DECIMALS_OF_TIPS))).collect()
+    /// With the decimals of the axes that have the same words.
+    fn words_of_tip(&self, frame: &TipFrame, tip: [f64; 3]) -> Vec<String> {
+        let words = frame.linear.iter().map(|axis| &self.program.axes[*axis]).zip(tip);
+        words.map(|(axis, at)| self.dialect.word(&axis.address, &fixed(at, usize::from(axis.decimals)))).collect()
     }
 
-    fn tip_words(&self, pass: &ProgramPass, row: usize) -> Result<String, NcError> {
+    fn tip_words(&self, frame: &TipFrame, pass: &ProgramPass, row: usize) -> Result<String, NcError> {
         // the axes are where they can be, too
         let axes = self.words_of_axes(&pass.rows[row], &|| format!("row {} of {}", row + 1, pass.name))?;
         let rotary = self.program.axes.iter().zip(axes).filter(|(axis, _)| axis.is_rotary).map(|(_, word)| word);
-        Ok(self.words_of_tip(pass.tips[row]).into_iter().chain(rotary).collect::<Vec<String>>().join(" "))
+        Ok(self.words_of_tip(frame, pass.tips[row]).into_iter().chain(rotary).collect::<Vec<String>>().join(" "))
     }
 
     /// The feed of the tip in a block, so that the contact has the feed of the program, mm/min.

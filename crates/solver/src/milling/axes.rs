@@ -10,6 +10,53 @@ use crate::milling::pose::CutterPose;
 /// A pose at which formulas are tried: no axis of it is special.
 const SOMEWHERE: [f64; 5] = [1.0, 2.0, 3.0, 0.3, 0.4];
 
+/// What changes no faster than this, a mm or a radian, stands still.
+const STILL: f64 = 1e-9;
+
+/// Why a machine does not take a cutter along passes; axes are told by their places.
+#[derive(Clone, Debug, PartialEq)]
+pub enum NoMillAxes {
+    /// A rotary axis is parallel to the spindle wherever the axes stand: it does not lean a cutter, which its own turn does not change.
+    AlongSpindle {
+        /// Which axis it is.
+        axis: usize,
+        /// How many rotary axes lean the cutter.
+        leaning: usize,
+    },
+    /// Too many axes, or too few.
+    Count {
+        /// Axes that lean the cutter.
+        leaning: usize,
+        /// Axes that shift it alone.
+        linear: usize,
+    },
+    /// They have no closed form.
+    NotExplicit(NotExplicit),
+}
+
+impl NoMillAxes {
+    /// Of a machine that has no closed form.
+    fn of_machine<'g>(graph: &'g Graph, t_work_tool: &Chain<'g>, axes: &[Expr<'g>], why: NotExplicit) -> NoMillAxes {
+        let direction = t_work_tool.direction(Symbolic::constant(graph, [0.0, 0.0, 1.0]));
+        let of_axis = |axis: &Expr<'g>| [t_work_tool.twist(*axis).angular, direction.derivative(*axis)];
+        let parts: Vec<Expr<'g>> = axes.iter().flat_map(of_axis).flat_map(|vector| vector.0).collect();
+        let tape = Tape::new(&parts, axes).expect("nothing is unbound");
+        // no angle of it is special
+        let row: Vec<f64> = (0..axes.len()).map(|k| 0.3 + 0.4 * k as f64).collect();
+        let mut values = vec![0.0; parts.len()];
+        ScalarEvaluator::new(&tape).run(&row, &mut values);
+        let moves = |part: &[f64]| part.iter().any(|value| value.abs() > STILL);
+        let each: Vec<[bool; 2]> = values.chunks(6).map(|parts| [moves(&parts[..3]), moves(&parts[3..])]).collect();
+        let leaning = each.iter().filter(|[_, leans]| *leans).count();
+        let linear = each.iter().filter(|[turns, _]| !turns).count();
+        match each.iter().position(|[turns, leans]| *turns && !leans) {
+            Some(axis) => NoMillAxes::AlongSpindle { axis, leaning },
+            None if (leaning, linear) != (2, 3) => NoMillAxes::Count { leaning, linear },
+            None => NoMillAxes::NotExplicit(why),
+        }
+    }
+}
+
 /// The axes of a machine in closed form.
 #[derive(Clone, Debug)]
 pub struct MillAxes {
@@ -28,7 +75,7 @@ impl MillAxes {
     ///
     /// # Panics
     /// If the chain depends on anything but the axes.
-    pub fn new<'g>(graph: &'g Graph, t_work_tool: &Chain<'g>, axes: &[Expr<'g>]) -> Result<MillAxes, NotExplicit> {
+    pub fn new<'g>(graph: &'g Graph, t_work_tool: &Chain<'g>, axes: &[Expr<'g>]) -> Result<MillAxes, NoMillAxes> {
         let spin = graph.variable("turn of the cutter");
         let target = t_work_tool.then(&Chain::new(graph, vec![Step::Rotate(Axis::Z, spin)]));
         let unknowns: Vec<Expr<'g>> = axes.iter().copied().chain([spin]).collect();
@@ -46,7 +93,7 @@ impl MillAxes {
             bindings: &[],
             line: (&somewhere, &[]),
         };
-        let both = problem.both_elbows()?;
+        let both = problem.both_elbows().map_err(|why| NoMillAxes::of_machine(graph, t_work_tool, axes, why))?;
         let inputs: Vec<Expr<'g>> = both.given.iter().flat_map(|vector| vector.0).collect();
         let tape = |formulas: &[Expr<'g>]| Tape::new(&formulas[..axes.len()], &inputs).expect("nothing is unbound");
         let along = Symbolic::constant(graph, [0.0, 0.0, 1.0]);

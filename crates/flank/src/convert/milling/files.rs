@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use flank_chain_dsl::{Dimension, Job, PassSpacing};
-use flank_export::{Dialect, MachineAxis, PassProgram, ProgramPass, WordsOf, write_passes};
+use flank_export::{Dialect, MachineAxis, PassProgram, ProgramPass, ProgramRapid, WordsOf, write_passes};
 
+use super::control::Control;
 use super::left::LeftMap;
 use super::machine::Machine;
 use super::retract::{Retracts, retracts};
@@ -75,7 +76,11 @@ pub(super) fn programs(
     let Some(machine) = found.milled.machine.as_ref().filter(|_| !request.nc.is_empty()) else {
         return Ok((Vec::new(), None));
     };
-    let passes = program(job, target, found, machine, (request, origin));
+    let control = match request.tool_centre_control.then(|| Control::of_machine(machine)).transpose() {
+        Ok(control) => control,
+        Err(unknown) => return Ok((Vec::new(), Some(unknown.told(machine)))),
+    };
+    let passes = program(job, target, found, (machine, control.as_ref()), (request, origin));
     let text = |dialect: &NcDialect| program_text(&passes, *dialect);
     let texts = request.nc.iter().map(text).collect::<Result<Vec<ProgramText>, Failure>>()?;
     session.check()?;
@@ -203,7 +208,7 @@ fn program(
     job: &Job<'_>,
     target: &Target<'_, '_>,
     found: &Found<'_, '_>,
-    machine: &Machine<'_, '_>,
+    (machine, control): (&Machine<'_, '_>, Option<&Control>),
     (request, origin): (&MillRequest, &Origin),
 ) -> PassProgram {
     let milling = target.milling;
@@ -227,13 +232,18 @@ fn program(
     let rows: Vec<&[Vec<f64>]> = poses.iter().map(|(_, rows, ..)| rows.as_slice()).collect();
     let hull = found.spaces.hull(&found.milled.lattice, &found.guarded);
     let Retracts { home, end, is_upright, of_passes } = retracts(machine, &rows, (hull, request.tool_centre_control));
+    let words = |tip: [f64; 3]| control.map_or(tip, |control| control.words(tip));
+    let framed = |rapids: Vec<ProgramRapid>| {
+        let framed = |rapid: ProgramRapid| ProgramRapid { tip: words(rapid.tip), ..rapid };
+        rapids.into_iter().map(framed).collect()
+    };
     let passes = poses.into_iter().zip(of_passes).map(|((name, rows, poses, ways), [approach, away])| ProgramPass {
         name,
-        approach,
+        approach: framed(approach),
         rows,
-        tips: poses.iter().map(|[x, y, z, ..]| [*x, *y, *z]).collect(),
+        tips: poses.iter().map(|[x, y, z, ..]| words([*x, *y, *z])).collect(),
         ways: [&[request.approach], &ways[..], &[request.approach]].concat(),
-        away,
+        away: framed(away),
     });
     let passes = passes.collect();
     let axes: Vec<MachineAxis> = machine
@@ -256,12 +266,11 @@ fn program(
         home,
         end,
         is_upright,
-        zero: (target.frame().to_string(), machine.at_zero()),
         axes,
         passes,
         feed: request.feed,
         spindle: request.spindle,
-        words: if request.tool_centre_control { WordsOf::Tip } else { WordsOf::Axes },
+        words: control.map_or(WordsOf::Axes, |control| WordsOf::Tip(control.frame(target.frame()))),
     }
 }
 

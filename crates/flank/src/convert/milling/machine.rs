@@ -4,12 +4,13 @@ use std::f64::consts::TAU;
 
 use flank_chain_dsl::{Axis, Job, LawSource, Machine as JobMachine, Milling};
 use flank_expr::Expr;
-use flank_solver::{MillAxes, NotExplicit, PoseSeries};
+use flank_expr::geometry::Chain;
+use flank_solver::{MillAxes, NoMillAxes, PoseSeries};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::convert::files::decimals;
 use crate::convert::is_mirrored;
-use crate::project::remark::{NotDone, NotDoneKind};
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::units;
 
 /// Points through which the motion of one block is known.
@@ -32,6 +33,8 @@ pub(super) struct Machine<'p, 'g> {
     pub(super) free: Vec<&'p Axis<'g>>,
     /// The same in numbers.
     pub(super) axes: FreeAxes,
+    /// The cutter in the work, in the free axes.
+    pub(super) chain: Chain<'g>,
     /// From the work to the cutter it makes a mirror image.
     is_mirrored: bool,
 }
@@ -46,8 +49,47 @@ pub(super) struct FreeAxes {
 
 /// Why there are no axes.
 pub(super) enum NoMachine {
-    NotExplicit(NotExplicit),
+    NotWorkedOut(NoMillAxes),
     NoFreeAxis,
+}
+
+impl NoMachine {
+    /// In words; nothing where no axis is free.
+    pub(super) fn told(&self, machine: &JobMachine<'_>) -> Option<Remark> {
+        let NoMachine::NotWorkedOut(why) = self else { return None };
+        let name = &machine.name;
+        let remark = |why: String, ways: Vec<String>| {
+            let message = format!("the axes of {name} are not worked out: {why}");
+            Some(Remark::new(RemarkKind::NoAxes, name, message).with(ways))
+        };
+        let free = || machine.axes.iter().filter(|axis| axis.source == LawSource::Free);
+        match why {
+            NoMillAxes::AlongSpindle { axis, leaning } => {
+                let axis = free().nth(*axis).map_or("a rotary axis", |axis| axis.name.as_str());
+                let others = match leaning {
+                    0 => "no other rotary axis does".to_string(),
+                    1 => "1 other rotary axis does".to_string(),
+                    many => format!("{many} other rotary axes do"),
+                };
+                let why = format!(
+                    "{axis} is parallel to the spindle, and a turn about its own axis does not lean a cutter; {others}, and two are needed"
+                );
+                let way = match leaning {
+                    0 | 1 => "take a machine with two rotary axes that lean the spindle against the work".to_string(),
+                    _ => format!("hold it still in a variant of the machine: `fix {axis} = 0 deg`"),
+                };
+                remark(why, vec![way])
+            }
+            NoMillAxes::Count { leaning, linear } => {
+                let why = format!(
+                    "its free axes that lean the spindle against the work are {leaning}, those that shift it {linear}; it takes two and three"
+                );
+                let way = "take another machine, or hold what is too much still in a variant: `fix`".to_string();
+                remark(why, vec![way])
+            }
+            NoMillAxes::NotExplicit(why) => remark(why.to_string(), Vec::new()),
+        }
+    }
 }
 
 impl<'p, 'g> Machine<'p, 'g> {
@@ -70,14 +112,14 @@ impl<'p, 'g> Machine<'p, 'g> {
         let chain = milling.t_work_tool.substituted(&laws);
         let chain = bindings.iter().fold(chain, |chain, bindings| chain.substituted(bindings));
         let variables: Vec<Expr<'g>> = free.iter().map(|axis| axis.variable).collect();
-        let closed = MillAxes::new(graph, &chain, &variables).map_err(NoMachine::NotExplicit)?;
+        let closed = MillAxes::new(graph, &chain, &variables).map_err(NoMachine::NotWorkedOut)?;
         let axes = FreeAxes {
             closed,
             elbow: 0,
             is_rotary: free.iter().map(|axis| units::is_angle(axis.dimension)).collect(),
             travels: free.iter().map(|axis| axis.travel).collect(),
         };
-        Ok(Machine { machine, free, axes, is_mirrored: is_mirrored(&milling.t_work_tool) })
+        Ok(Machine { machine, free, axes, chain, is_mirrored: is_mirrored(&milling.t_work_tool) })
     }
 
     /// The same on the elbow on which these poses stay within the travels, and turn less.

@@ -2,6 +2,7 @@
 
 mod block;
 pub(crate) mod clamp;
+mod control;
 mod cutter;
 pub(crate) mod drawn;
 mod files;
@@ -39,7 +40,7 @@ use rayon::prelude::*;
 
 use self::cutter::MillingCutter;
 use self::left::LeftMap;
-use self::machine::{Machine, NoMachine};
+use self::machine::Machine;
 use self::obstacles::{Guarded, KeptClear};
 use self::patch::Lattice;
 use self::plan::{LeftAt, Plan, Planner};
@@ -240,14 +241,9 @@ fn of_milling(
 
 /// The machine, or why its axes are not known.
 fn machine_of<'p, 'g>(job: &'p Job<'g>, milling: &Milling<'g>) -> (Option<Machine<'p, 'g>>, Option<Remark>) {
-    let name = &job.machines[milling.machine].name;
     match Machine::of_milling(job, milling) {
         Ok(machine) => (Some(machine), None),
-        Err(NoMachine::NoFreeAxis) => (None, None),
-        Err(NoMachine::NotExplicit(why)) => {
-            let message = format!("the axes of {name} are not worked out: {why}");
-            (None, Some(Remark::new(RemarkKind::NoAxes, name, message)))
-        }
+        Err(none) => (None, none.told(&job.machines[milling.machine])),
     }
 }
 

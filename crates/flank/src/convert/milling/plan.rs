@@ -24,7 +24,9 @@ const CLOSER: f64 = 8.0;
 const MISSED: f64 = 1.25;
 /// Gaps whose ridges are looked at together; where one has none, no more follow. They become more and more.
 const TOGETHER: [usize; 2] = [4, 256];
-/// Passes whose blocks are looked at while their number is looked for.
+/// Positions on a pass with which the search for their number begins.
+const BEGUN_POSITIONS: usize = 17;
+/// Passes whose blocks are looked at first while their number is looked for.
 const FEW_PASSES: usize = 5;
 /// Of a ridge no more than this share of the passes is missing at their ends.
 const ENDS: f64 = 1.0 / 16.0;
@@ -92,7 +94,8 @@ impl Planner<'_, '_, '_> {
     /// What no number of passes or blocks reaches, with the place.
     pub(super) fn plan(&self) -> Result<Plan, NotDone> {
         let passes = evenly(self.passes()?);
-        let along = evenly(self.positions(&passes)?);
+        let (count, blocks) = self.positions(&passes)?;
+        let along = evenly(count);
         let (cusp, short) = self.highest_cusp(&passes)?;
         let cusp = LeftAt { height: cusp.height - self.stock(), ..cusp };
         if let PassSpacing::Scallop(wanted) = self.target.milling.spacing
@@ -100,7 +103,6 @@ impl Planner<'_, '_, '_> {
         {
             return Err(self.too_high(cusp, passes.len(), wanted));
         }
-        let blocks = self.left_by_blocks(&passes, &along, &(0..passes.len()).collect::<Vec<usize>>())?;
         let steps = |k: usize, count: usize| {
             let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[k])).fold(0.0, f64::max);
             widest / (count - 1) as f64
@@ -258,11 +260,13 @@ impl Planner<'_, '_, '_> {
         })
     }
 
-    /// How many positions on a pass.
-    fn positions(&self, passes: &[f64]) -> Result<usize, NotDone> {
+    /// How many positions on a pass, and what blocks between them leave on all passes.
+    fn positions(&self, passes: &[f64]) -> Result<(usize, [LeftAt; 2]), NotDone> {
         let widest = self.fields.lattice.frames.iter().map(|frame| length(frame.steps[1])).fold(0.0, f64::max);
         let few: Vec<usize> = few_of(passes.len());
-        positions(self.target, widest, |count| self.left_by_blocks(passes, &evenly(count), &few))
+        let all: Vec<usize> = (0..passes.len()).collect();
+        let on = |which: &[usize], count: usize| self.left_by_blocks(passes, &evenly(count), which);
+        positions(self.target, widest, [&|count| on(&few, count), &|count| on(&all, count)])
     }
 
     /// The most and the least that straight blocks leave on some passes.
@@ -321,12 +325,14 @@ fn last(along: f64, ridge: impl Fn(f64) -> Option<LeftAt>) -> Option<LeftAt> {
     Some(found)
 }
 
-/// How many positions on a pass that is at the most so long, mm; `left` is what blocks between so many leave at the most and at the least.
+/// How many positions on a pass that is at the most so long, mm, and what blocks between them leave at the most and at the least on all passes.
+///
+/// `left` tells what blocks between so many positions leave, on a few passes and on all: none may leave more than is asked for.
 pub(super) fn positions(
     target: &Target<'_, '_>,
     widest: f64,
-    left: impl Fn(usize) -> Result<[LeftAt; 2], NotDone>,
-) -> Result<usize, NotDone> {
+    left: [&dyn Fn(usize) -> Result<[LeftAt; 2], NotDone>; 2],
+) -> Result<(usize, [LeftAt; 2]), NotDone> {
     let too_many = |count: usize| {
         let name = &target.milling.name;
         let message = format!("{name}: it would take {count} positions on a pass; at most {MOST} are made");
@@ -336,34 +342,36 @@ pub(super) fn positions(
         };
         NotDone::new(NotDoneKind::NotMilled, name, message).with(vec![way.to_string()])
     };
+    let [few, all] = left;
     let wanted = match target.milling.blocks {
-        BlockLength::Count(count) => return Ok(count),
+        BlockLength::Count(count) => return Ok((count, all(count)?)),
         BlockLength::Step(step) => {
-            let count = (widest / step).ceil() as usize + 1;
-            return if count > MOST { Err(too_many(count)) } else { Ok(count.max(2)) };
+            let count = ((widest / step).ceil() as usize + 1).max(2);
+            return if count > MOST { Err(too_many(count)) } else { Ok((count, all(count)?)) };
         }
         BlockLength::Chord(chord) => chord,
     };
-    let mut count: usize = 17;
-    // round a thread, blocks may be too long to stay beside the surface
-    let mut found = left(count);
-    while count < SHORT && found.is_err() {
-        count = 2 * count - 1;
-        found = left(count);
-    }
-    for _ in 0..40 {
-        let [most, least] = found?;
-        let off = most.height.max(-least.height);
-        if off <= wanted {
-            return Ok(count);
+    let (mut count, mut looked_at) = (BEGUN_POSITIONS, few);
+    let mut is_of_all = false;
+    while count <= MOST {
+        let found = match looked_at(count) {
+            // round a thread, blocks may be too long to stay beside the surface
+            Err(_) if count < SHORT => {
+                count = 2 * count - 1;
+                continue;
+            }
+            found => found?,
+        };
+        let off = found[0].height.max(-found[1].height);
+        if off > wanted {
+            count = (((count - 1) as f64 * (off / wanted).sqrt()).ceil() as usize + 1).max(count + 1);
+        } else if is_of_all {
+            return Ok((count, found));
+        } else {
+            (looked_at, is_of_all) = (all, true);
         }
-        count = (((count - 1) as f64 * (off / wanted).sqrt()).ceil() as usize + 1).max(count + 1);
-        if count > MOST {
-            return Err(too_many(count));
-        }
-        found = left(count);
     }
-    Ok(count)
+    Err(too_many(count))
 }
 
 /// Evenly spread ones of many.

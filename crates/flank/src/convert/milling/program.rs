@@ -7,6 +7,7 @@ use std::fmt;
 use flank_solver::PoseSeries;
 
 use super::block::{Block, Motion, Word};
+use super::control::{Control, OF_TIP};
 use super::machine::{FreeAxes, Machine};
 use super::{iso, klartext};
 use crate::project::units;
@@ -88,7 +89,7 @@ struct State<'m, 'p, 'g> {
     /// Of each axis its address, and where it stands (mm or radians), if that was said.
     addresses: HashMap<String, usize>,
     axes: Vec<Option<f64>>,
-    /// The tip in the work, under tool-centre control.
+    /// The words of the tip, under tool-centre control.
     tip: [Option<f64>; 3],
     motion: Option<Motion>,
     has_tip_control: bool,
@@ -96,8 +97,8 @@ struct State<'m, 'p, 'g> {
     has_inverse_time: bool,
     /// mm per unit of lengths.
     unit: f64,
-    /// Where the zero of the work is, from which words of linear axes count, in a program that is given the tip; else nothing.
-    zero: Option<Vec<f64>>,
+    /// What the control knows of the machine, in a program that is given the tip: words of linear axes count from the zero of the work then.
+    control: Option<Control>,
 }
 
 /// Reads a program in the words of Fanuc, Siemens 840D, LinuxCNC or Heidenhain's Klartext, which its first block tells.
@@ -117,8 +118,11 @@ pub(super) fn read(text: &str, machine: &Machine<'_, '_>) -> Result<Program, Fau
         }
     }
     let mut state = State::new(machine);
-    if blocks.iter().any(|(_, block)| block.as_ref().is_ok_and(|block| block.tip_control == Some(true))) {
-        state.zero = Some(machine.at_zero());
+    let begins = |block: &Result<Block, Fault>| block.as_ref().is_ok_and(|block| block.tip_control == Some(true));
+    if let Some((line, _)) = blocks.iter().find(|(_, block)| begins(block)) {
+        let control = Control::of_machine(machine);
+        let control = control.map_err(|unknown| Fault { line: *line, message: unknown.message(machine) })?;
+        state.control = Some(control);
     }
     let mut program = Program { moves: Vec::new(), has_end: false, has_unit: false };
     for (line, block) in blocks {
@@ -151,7 +155,7 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
             has_tip_control: false,
             has_inverse_time: false,
             unit: 1.0,
-            zero: None,
+            control: None,
         }
     }
 
@@ -207,8 +211,8 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
 
     fn tip_control(&mut self, on: bool) {
         self.has_tip_control = on;
-        let pose = self.known().map(|axes| self.machine.axes.pose(&axes));
-        self.tip = pose.map_or([None; 3], |pose| [0, 1, 2].map(|k| Some(pose[k])));
+        let tip = self.known().zip(self.control.as_ref()).map(|(axes, control)| control.tip(&axes));
+        self.tip = tip.map_or([None; 3], |tip| tip.map(Some));
     }
 
     /// The linear axes follow the tip.
@@ -217,7 +221,7 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
         let is_turned = self.axes.iter().enumerate().all(|(k, at)| at.is_some() || !free.is_rotary(k));
         let from: Vec<f64> = self.axes.iter().map(|at| at.unwrap_or(0.0)).collect();
         let tip = if let [Some(x), Some(y), Some(z)] = self.tip { Some([x, y, z]) } else { None };
-        let found = tip.filter(|_| is_turned).map(|tip| free.with_tip(&from, tip));
+        let found = tip.filter(|_| is_turned).zip(self.control.as_ref()).map(|(tip, control)| control.axes(tip, &from));
         for axis in (0..from.len()).filter(|axis| !free.is_rotary(*axis)) {
             self.axes[axis] = found.as_ref().map(|found| found[axis]);
         }
@@ -232,7 +236,7 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
     }
 
     fn axis(&mut self, word: &Word) -> Result<(), String> {
-        let of_tip = ["X", "Y", "Z"].iter().position(|address| *address == word.address);
+        let of_tip = OF_TIP.iter().position(|address| *address == word.address);
         if let Some(k) = of_tip.filter(|_| self.has_tip_control) {
             self.tip[k] = Some(word.value * self.unit);
             return Ok(());
@@ -249,9 +253,8 @@ impl<'m, 'p, 'g> State<'m, 'p, 'g> {
         let own = &self.machine.free[axis].word;
         let is_rotary = self.machine.axes.is_rotary(axis);
         let programmed = if is_rotary { word.value.to_radians() } else { word.value * self.unit };
-        let position = match &self.zero {
-            Some(zero) if !is_rotary && own.reversed => zero[axis] - programmed,
-            Some(zero) if !is_rotary => zero[axis] + programmed,
+        let position = match &self.control {
+            Some(control) if !is_rotary => control.position(axis, programmed),
             _ if own.reversed => own.offset - programmed,
             _ => programmed - own.offset,
         };

@@ -445,13 +445,13 @@ pub(super) fn milled<'p, 'g>(
     let rows = ROWS.map(|row| PassedRow::new(fields, cutter, &pass.way, row));
     let blocks = |count: usize| left_by_blocks(target, cutter, (&pass.way, &start, straight), &rows, &evenly(count));
     let widest = way_length(&pass.way);
-    let count = plan::positions(target, widest, blocks)?;
+    let (count, left) = plan::positions(target, widest, [&blocks, &blocks])?;
     let along = evenly(count);
     let poses: Vec<[f64; 6]> = along.iter().map(|share| pass.way.at(*share)).collect();
     let shares = [vec![0.5], along.iter().map(|share| start.share(*share)).collect::<Vec<f64>>()];
     let lattice = target.lattice(shares.clone())?;
     let longest = poses.windows(2).map(|pair| super::distance(&pair[0], &pair[1])).fold(0.0, f64::max);
-    let plan = Plan { shares, cusp: None, short: None, blocks: blocks(count)?, step: None, block: longest };
+    let plan = Plan { shares, cusp: None, short: None, blocks: left, step: None, block: longest };
     let axes = machine.iter().map(|machine| machine.axes.along(&poses)).collect();
     Ok((Milled { plan, lattice, ways: vec![pass.way], poses: vec![poses], axes, machine }, told))
 }
