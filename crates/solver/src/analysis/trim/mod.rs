@@ -66,7 +66,7 @@ impl<'g> Trim<'_, 'g> {
             None => false,
         };
         // each of them, even where one was not looked at
-        let is_swept_known = self.by.iter().map(sweeps).fold(true, |all, one| all && one);
+        let is_swept_known = self.by.iter().filter(|by| !sweeps(by)).count() == 0;
         let intersection =
             |by: &TrimmedBy<'_, 'g>| Ok((Intersection::new([self.surface, by.surface], self.coordinates)?, by.number));
         let intersections: Vec<(Intersection, usize)> = self.by.iter().map(intersection).collect::<Result<_, _>>()?;
