@@ -61,12 +61,14 @@ impl<'g> Trim<'_, 'g> {
         (targets, counts): (&[[f64; 2]], [usize; 2]),
         points_of_by: &dyn Fn(usize, [Expr<'g>; 2]) -> SurfaceProblem,
     ) -> Result<Vec<[Vec<Meeting>; 2]>, TapeError> {
-        let sweeps = |by: &TrimmedBy<'_, 'g>| match &by.positions {
-            Some(positions) => positions.judge_of_another(points, counts, by.number),
-            None => false,
-        };
         // each of them, even where one was not looked at
-        let is_swept_known = self.by.iter().filter(|by| !sweeps(by)).count() == 0;
+        let mut is_swept_known = true;
+        for by in &self.by {
+            is_swept_known &= match &by.positions {
+                Some(positions) => positions.judge_of_another(points, counts, by.number),
+                None => false,
+            };
+        }
         let intersection =
             |by: &TrimmedBy<'_, 'g>| Ok((Intersection::new([self.surface, by.surface], self.coordinates)?, by.number));
         let intersections: Vec<(Intersection, usize)> = self.by.iter().map(intersection).collect::<Result<_, _>>()?;
