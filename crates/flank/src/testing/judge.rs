@@ -14,12 +14,14 @@ use crate::project::failure::Failure;
 use crate::project::requests::Onto;
 use crate::project::units;
 use crate::solve::required::RequiredNumber;
-use crate::solve::{self, SolveOptions, geometry, travel};
+use crate::solve::{self, SolveOptions, cut, geometry, travel};
 use crate::testing::points::{Tested, place};
 use crate::testing::quantities::{FOLLOWED, Known};
 
 /// What was found where a formula has no value.
 const NO_NUMBER: &str = "no number: the formula has no value there";
+/// What single edges leave, by its name in expectations.
+pub(super) const LEFT: &str = "left";
 /// Places that are named one by one.
 const NAMED: usize = 3;
 
@@ -229,26 +231,30 @@ fn at_points<'g>(
     let surface = tested.surface(index);
     let Some(sample) = &surface.sample else { return Verdict::lost("no sample") };
     let points = tested.points(index);
-    let values = values(tested, index, (sample, points), (value, known));
+    let values = values(tested, index, (Some(sample), points), (value, known));
     let mut verdict = worst((sample, points), &values, (&surface.name, dimension), wanted);
-    let is_induced = known.iter().any(|(name, variable)| {
-        let id = variable.as_variable();
-        name.starts_with("induced_") && id.is_some_and(|id| value.graph().variables_of(&[value]).contains(&id))
-    });
-    if is_induced && surface.generation.process != Process::Envelope {
+    let used = value.graph().variables_of(&[value]);
+    let is_named = |start: &str| {
+        let is_used = |variable: &Expr<'g>| variable.as_variable().is_some_and(|id| used.contains(&id));
+        known.iter().any(|(name, variable)| name.starts_with(start) && is_used(variable))
+    };
+    if is_named("induced_") && surface.generation.process != Process::Envelope {
         let of_tool = "induced curvatures are of an envelope and the tool that touches it: this surface is none";
         verdict.details = vec![of_tool.to_string()];
     } else if !verdict.holds {
         verdict.details.extend(tested.hints(index));
+        if is_named(LEFT) {
+            verdict.details.extend(cut::unknown_of(tested.job, surface, points, tested.session));
+        }
     }
     verdict
 }
 
-/// A function of points at those that are solved.
-fn values<'g>(
+/// A function of points at those that are solved. Curvatures are known of surfaces with a sample.
+pub(super) fn values<'g>(
     tested: &Tested<'_, 'g>,
     index: usize,
-    (sample, points): (&Sample<'g>, &[SurfacePoint]),
+    (sample, points): (Option<&Sample<'g>>, &[SurfacePoint]),
     (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
 ) -> Vec<Option<f64>> {
     let surface = tested.surface(index);
@@ -257,14 +263,19 @@ fn values<'g>(
     let used = graph.variables_of(&value);
     let known: Vec<&(&str, Expr<'g>)> =
         known.iter().filter(|(_, variable)| variable.as_variable().is_some_and(|id| used.contains(&id))).collect();
-    let fields = match known[..] {
-        [] => Vec::new(),
-        _ => geometry::fields(tested.job, surface, sample, points),
+    let is_curved = known.iter().any(|(name, _)| *name != LEFT);
+    let fields = match sample.filter(|_| is_curved) {
+        Some(sample) => geometry::fields(tested.job, surface, sample, points),
+        None => Vec::new(),
     };
-    let columns: Vec<Option<&Values>> = known
-        .iter()
-        .map(|(name, _)| fields.iter().find(|field| field.name == *name).map(|field| &field.values))
-        .collect();
+    let column = |(name, _): &&(&str, Expr<'g>)| match *name {
+        LEFT => cut::heights(tested.job, surface, points, tested.session),
+        _ => fields.iter().find(|field| field.name == *name).and_then(|field| match &field.values {
+            Values::Scalars(values) => Some((0..points.len()).map(|k| values.at(k)).collect()),
+            Values::Vectors(_) => None,
+        }),
+    };
+    let columns: Vec<Option<Vec<Option<f64>>>> = known.iter().map(column).collect();
     let inputs: Vec<Expr<'g>> =
         surface.surface.unknowns.iter().copied().chain(known.iter().map(|(_, variable)| *variable)).collect();
     let tape = Tape::new(&value, &inputs).expect("a job without errors leaves nothing unbound");
@@ -275,8 +286,7 @@ fn values<'g>(
         }
         let mut input = point.unknowns.clone();
         for column in &columns {
-            let Some(Values::Scalars(values)) = column else { return None };
-            input.push(values.at(k)?);
+            input.push(column.as_ref()?[k]?);
         }
         evaluator.run(&input, &mut out);
         Some(out[0])
@@ -291,7 +301,7 @@ fn of_table<'g>(
 ) -> Verdict {
     let surface = tested.surface(index);
     let [PointColumn::Coordinate(first), PointColumn::Coordinate(second), compared @ ..] = columns else {
-        return Verdict::lost("points are found by coordinates, not by curvatures");
+        return Verdict::lost("points are found by coordinates, not by what is known of them");
     };
     let at = rows.iter().map(|row| [row[0], row[1]]).collect();
     let (sample, points) = tested.generated(index, [first.clone(), second.clone()], at);
@@ -300,12 +310,12 @@ fn of_table<'g>(
     for (k, column) in compared.iter().enumerate() {
         let (name, dimension, found) = match column {
             PointColumn::Coordinate(of) => {
-                (of.name.as_str(), of.dimension, values(tested, index, (&sample, &points), (of.value, &[])))
+                (of.name.as_str(), of.dimension, values(tested, index, (Some(&sample), &points), (of.value, &[])))
             }
-            PointColumn::Curvature(name) => {
+            PointColumn::Known(name, dimension) => {
                 let variable = graph.variable(*name);
-                let found = values(tested, index, (&sample, &points), (variable, &[(*name, variable)]));
-                (*name, Dimension::LENGTH.power(-1), found)
+                let found = values(tested, index, (Some(&sample), &points), (variable, &[(*name, variable)]));
+                (*name, *dimension, found)
             }
         };
         let apart: Vec<Option<f64>> = found.iter().zip(rows).map(|(value, row)| Some((*value)? - row[2 + k])).collect();
