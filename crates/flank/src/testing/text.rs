@@ -67,8 +67,11 @@ impl Display for TestedSpec {
         }
         for item in &self.items {
             for expectation in item.expectations.iter().filter(|expectation| !expectation.holds) {
-                let at = format!("{}:{}", expectation.place.line, expectation.place.column);
-                writeln!(f, "  {}:{at}: {}", item.name, shortened(&expectation.expected))?;
+                let place = &expectation.place;
+                // what a job inherits stands in another file
+                let from = if place.file == self.file { String::new() } else { format!(" from {}", place.file) };
+                let at = format!("{from}:{}:{}", place.line, place.column);
+                writeln!(f, "  {}{at}: {}", item.name, shortened(&expectation.expected))?;
                 writeln!(f, "    found: {}", expectation.found)?;
                 expectation.details.iter().try_for_each(|line| writeln!(f, "    {line}"))?;
             }
