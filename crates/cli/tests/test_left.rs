@@ -72,28 +72,3 @@ fn snapshots_keep_what_edges_leave() {
     let told = text(&tested(&folder, &[]).stdout);
     assert!(told.contains("it is not cut by plane any more"), "{told}");
 }
-
-/// What a job inherits stands in another file, which a failure names.
-#[test]
-fn a_failure_names_the_file_where_its_expectation_stands() {
-    let folder = folder("test_from");
-    let gear = std::fs::read_to_string(top().join("specs/tutorial/first_gear.chain")).expect("it is shipped");
-    written(&folder, "gear.chain", &gear);
-    let job =
-        gear.lines().find_map(|line| line.strip_prefix("job ")).expect("a job").split(' ').next().expect("its name");
-    written(
-        &folder,
-        "heir.chain",
-        &format!(
-            "use \"gear.chain\"\n\njob heir extends {job} {{\n    drive m.Y = 1.001 * reference_radius * roll\n}}\n"
-        ),
-    );
-    let run = tested(&folder, &["heir.chain", "--junit", "out.xml"]);
-    let told = text(&run.stdout);
-    let line = 1 + gear.lines().position(|line| line.contains("expect flank_plus: abs")).expect("it is expected");
-    assert!(told.contains(&format!("heir from gear.chain:{line}:5: flank_plus: abs")), "{told}{}", text(&run.stderr));
-    let xml = std::fs::read_to_string(folder.join("out.xml")).expect("it is written");
-    assert!(xml.contains(&format!("message=\"gear.chain:{line}:5; off by")), "{xml}");
-    let own = text(&tested(&folder, &["gear.chain"]).stdout);
-    assert!(!own.contains(" from "), "{own}");
-}

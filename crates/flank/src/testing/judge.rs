@@ -153,6 +153,12 @@ pub(super) fn of_requirement(tested: &Tested<'_, '_>, index: usize, number: usiz
     let required = RequiredNumber::all(surface, &tested.job.bindings());
     let missed: Vec<(usize, f64)> = required[number].missed(points).collect();
     let all = units::counted(points.len(), "point");
+    if points.iter().all(|point| point.outcome != Outcome::Solved) {
+        return Verdict {
+            details: tested.hints(index),
+            ..Verdict::lost(format!("no point of {} is solved", surface.name))
+        };
+    }
     if missed.is_empty() {
         return Verdict { holds: true, found: format!("at {all} of {}", surface.name), details: Vec::new() };
     }
@@ -407,6 +413,10 @@ fn of_travel(tested: &Tested<'_, '_>, machine: Option<&str>) -> Result<Verdict, 
     let runs = travel::runs(tested.job, &solved);
     let of = |name: &str| machine.is_none_or(|machine| machine == name);
     let ended: Vec<_> = runs.iter().filter(|run| of(run.machine()) && run.is_beyond().is_some()).collect();
+    let has_travel = runs.iter().any(|run| of(run.machine()) && run.axis.travel.is_some());
+    if ended.is_empty() && has_travel && !solved.is_empty() {
+        return Ok(Verdict::lost("no point of the job is solved: nothing says how far its axes move"));
+    }
     let beyond = travel::beyond(tested.job, &solved);
     let prefix = machine.map(|machine| format!("{machine}."));
     let beyond = beyond.into_iter().filter(|one| {
@@ -441,6 +451,10 @@ fn on<'g>(
         let details = told.into_iter().map(|why| why.message).collect();
         let found = format!("{} does not do the same", conversion.machine.name);
         return Ok(Verdict { holds: false, found, details });
+    }
+    if !conversion.touches() {
+        let found = format!("no point of {} is solved: nothing says where its tool touches", surface.name);
+        return Ok(Verdict { holds: false, found, details: Vec::new() });
     }
     let off = conversion.off();
     let found = format!("off by up to {}", precise(Dimension::LENGTH, off));

@@ -12,6 +12,9 @@ impl Display for TestResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.specs.iter().try_for_each(|spec| write!(f, "{spec}"))?;
         let tested = self.specs.iter().filter(|spec| spec.says_something()).count();
+        if tested == 0 {
+            return writeln!(f, "nothing is tested: no job, and no machine that expects something by itself");
+        }
         let specs = units::counted(tested, "spec");
         let failed = match self.failed {
             0 => "all hold".to_string(),
