@@ -79,7 +79,7 @@ impl Files for Disk {
         ask_plain(real)?;
         let mut bytes = Vec::new();
         std::fs::File::open(real)?.take((most as u64).saturating_add(1)).read_to_end(&mut bytes)?;
-        limited(decoded(bytes)?, most)
+        if bytes.len() > most { Err(ErrorKind::FileTooLarge.into()) } else { decoded(bytes) }
     }
 
     fn entries(&self, folder: &Path, most: usize) -> Vec<FolderEntry> {
@@ -165,8 +165,8 @@ fn decoded(bytes: Vec<u8>) -> Result<String> {
     let zeros = head.iter().filter(|byte| **byte == 0).count();
     let is_marked = [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|mark| head.starts_with(mark));
     let encoding = match 8 * zeros {
-        most if most > 5 * head.len() => "UTF-32",
-        half if half > 3 * head.len() || is_marked => "UTF-16",
+        most if most > 5 * head.len() && zeros < head.len() => "UTF-32",
+        half if half > 3 * head.len() && zeros < head.len() || is_marked => "UTF-16",
         _ => return String::from_utf8(bytes).map_err(|_| ErrorKind::InvalidData.into()),
     };
     Err(Error::new(ErrorKind::InvalidData, format!("it is {encoding} text: save it as UTF-8")))
