@@ -3,8 +3,7 @@
 use flank_chain_dsl::{
     Dimension, Expected, Job, PointColumn, PoseDifference, PoseTolerance, Process, Quantity, Sample,
 };
-use flank_export::Values;
-use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_expr::Expr;
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::compare::deviation;
@@ -14,14 +13,13 @@ use crate::project::failure::Failure;
 use crate::project::requests::Onto;
 use crate::project::units;
 use crate::solve::required::RequiredNumber;
-use crate::solve::{self, SolveOptions, cut, geometry, travel};
+use crate::solve::{self, SolveOptions, cut, travel};
 use crate::testing::points::{Tested, place};
 use crate::testing::quantities::{FOLLOWED, Known};
+use crate::testing::values::{LEFT, values};
 
 /// What was found where a formula has no value.
 const NO_NUMBER: &str = "no number: the formula has no value there";
-/// What single edges leave, by its name in expectations.
-pub(super) const LEFT: &str = "left";
 /// Places that are named one by one.
 const NAMED: usize = 3;
 
@@ -254,50 +252,6 @@ fn at_points<'g>(
         }
     }
     verdict
-}
-
-/// A function of points at those that are solved. Curvatures are known of surfaces with a sample.
-pub(super) fn values<'g>(
-    tested: &Tested<'_, 'g>,
-    index: usize,
-    (sample, points): (Option<&Sample<'g>>, &[SurfacePoint]),
-    (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
-) -> Vec<Option<f64>> {
-    let surface = tested.surface(index);
-    let graph = value.graph();
-    let value = graph.substitute(&[value], &tested.job.bindings());
-    let used = graph.variables_of(&value);
-    let known: Vec<&(&str, Expr<'g>)> =
-        known.iter().filter(|(_, variable)| variable.as_variable().is_some_and(|id| used.contains(&id))).collect();
-    let is_curved = known.iter().any(|(name, _)| *name != LEFT);
-    let fields = match sample.filter(|_| is_curved) {
-        Some(sample) => geometry::fields(tested.job, surface, sample, points),
-        None => Vec::new(),
-    };
-    let column = |(name, _): &&(&str, Expr<'g>)| match *name {
-        LEFT => cut::heights(tested.job, surface, points, tested.session),
-        _ => fields.iter().find(|field| field.name == *name).and_then(|field| match &field.values {
-            Values::Scalars(values) => Some((0..points.len()).map(|k| values.at(k)).collect()),
-            Values::Vectors(_) => None,
-        }),
-    };
-    let columns: Vec<Option<Vec<Option<f64>>>> = known.iter().map(column).collect();
-    let inputs: Vec<Expr<'g>> =
-        surface.surface.unknowns.iter().copied().chain(known.iter().map(|(_, variable)| *variable)).collect();
-    let tape = Tape::new(&value, &inputs).expect("a job without errors leaves nothing unbound");
-    let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
-    let at = |(k, point): (usize, &SurfacePoint)| {
-        if point.outcome != Outcome::Solved {
-            return None;
-        }
-        let mut input = point.unknowns.clone();
-        for column in &columns {
-            input.push(column.as_ref()?[k]?);
-        }
-        evaluator.run(&input, &mut out);
-        Some(out[0])
-    };
-    points.iter().enumerate().map(at).collect()
 }
 
 fn of_table<'g>(

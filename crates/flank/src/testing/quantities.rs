@@ -21,8 +21,8 @@ use crate::project::spec::Origin;
 use crate::project::units::counted;
 use crate::solve::body::{refusal, space};
 use crate::solve::cut;
-use crate::testing::judge::values;
 use crate::testing::points::Tested;
+use crate::testing::values::values;
 
 /// Positions of a pitch at which contacts are looked at, and of a motion at which other machines are.
 const POSITIONS: u32 = 60;
