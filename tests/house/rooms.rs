@@ -54,7 +54,7 @@ const ROOMS: [(&str, &[&str]); 3] = [
         ],
     ),
     ("export", &["vector", "text", "schema", "files", "points", "shape", "solid", "step", "motion", "measuring"]),
-    ("flank", &["project", "solve", "compare", "convert", "draw", "report", "page", "exchange", "testing", "language"]),
+    ("flank", &["project", "solve", "compare", "convert", "draw", "report", "page", "testing", "exchange", "language"]),
 ];
 
 /// Entries of a crate's `src/` at the most.

@@ -30,9 +30,16 @@ const FORMATE: &str = "bevel/formate_gear.chain";
 const HOBBED: &str = "bevel/face_hobbed_pinion.chain";
 const SPUR: &str = "hobbing/spur_gear.chain";
 const HELICAL: &str = "hobbing/helical_gear.chain";
+const HEAD_TABLE: &str = "machines/five_axis_head_table.chain";
+const FREE_FORM: &str = "machines/free_form.chain";
+const HEXAPOD: &str = "machines/hexapod.chain";
+const HEXAPOD_GEAR: &str = "hexapod/hexapod_gear.chain";
+const REAL_HOB: &str = "hobbing/real_hob.chain";
+const MILLS: &str = "tools/end_mills.chain";
+const GROOVES: &str = "../tests/machines/grooves.chain";
 
 /// Micrometres, arc seconds and millionths of settings; then signs, ratios, units and hands.
-const MUTATIONS: [Mutation; 42] = [
+const MUTATIONS: [Mutation; 62] = [
     setting(PINION, "97.95940290780507 mm", "97.96040290780507 mm", "m.radial_distance"),
     setting(PINION, "-52.79674678267486 deg", "-52.79702456045264 deg", "m.cradle_angle"),
     setting(PINION, "15.64096727073747 deg", "15.64124504851525 deg", "m.machine_root_angle"),
@@ -80,6 +87,36 @@ const MUTATIONS: [Mutation; 42] = [
     text(SPUR, "tools/rack.chain", "pi * module / 4 - u * sin", "3.1416 * module / 4 - u * sin"),
     text(HELICAL, HELICAL, "hob_starts / teeth * spindle", "hob_starts / (teeth + 1) * spindle"),
     text(HELICAL, HELICAL, "drive m.Z, m.A, m.B = feed, hob_hand", "drive m.Z, m.A, m.B = feed, -hob_hand"),
+    text(HEAD_TABLE, HEAD_TABLE, "translate(X, Y, Z)", "translate(Y, X, Z)"),
+    text(HEAD_TABLE, HEAD_TABLE, "rotation_point_z) rotate_z(C)", "rotation_point_z) rotate_z(-C)"),
+    text(HEAD_TABLE, HEAD_TABLE, "translate_z(0 mm)", "translate_z(0.01 mm)"),
+    text(HEAD_TABLE, HEAD_TABLE, "translate(spindle_offset, 0 mm", "translate(0 mm, 0 mm"),
+    text(FREE_FORM, FREE_FORM, "translate(X, Y, Z)", "translate(X, Y, -Z)"),
+    text(FREE_FORM, FREE_FORM, "= rotate_z(C)", "= rotate_z(-C)"),
+    text(HEXAPOD, HEXAPOD, "rotate_x(A) rotate_y(B)", "rotate_y(B) rotate_x(A)"),
+    text(HEXAPOD_GEAR, HEXAPOD, "= 420 mm", "= 420.01 mm"),
+    text(HEXAPOD_GEAR, HEXAPOD, "= 48 deg", "= 48.01 deg"),
+    text(HEXAPOD_GEAR, HEXAPOD, "120 deg * pair", "121 deg * pair"),
+    text(REAL_HOB, "tools/hob_zi_edges.chain", "reduced_lead = hand *", "reduced_lead = hand * 1.0001 *"),
+    text(REAL_HOB, "tools/hob_zi_edges.chain", "pi / (2 * starts)", "pi / (2.001 * starts)"),
+    text(REAL_HOB, "tools/hob_zi_edges.chain", "shrunk = 1 - fall", "shrunk = 1.0001 - fall"),
+    text(REAL_HOB, REAL_HOB, "+ hob_radius - e.fall", "+ hob_radius + 0.01 mm - e.fall"),
+    text(
+        GROOVES,
+        MILLS,
+        "arc(center: [0 mm, -radius], radius: radius",
+        "arc(center: [0 mm, -radius], radius: 1.001 * radius",
+    ),
+    text(GROOVES, MILLS, "arc(center: [radius - corner, -corner]", "arc(center: [radius - corner, -1.001 * corner]"),
+    text(GROOVES, MILLS, "to: [radius, -cutting_length])", "to: [1.001 * radius, -cutting_length])"),
+    text(
+        GROOVES,
+        MILLS,
+        "center: [radius - barrel_radius, -height]",
+        "center: [radius - barrel_radius, -1.001 * height]",
+    ),
+    text(GROOVES, MILLS, "end_radius = tip_radius * cos(half_angle)", "end_radius = tip_radius"),
+    text(GROOVES, MILLS, "end_height = corner * (1 - sin(half_angle))", "end_height = corner"),
 ];
 
 fn place(file: &str) -> PathBuf {
@@ -157,7 +194,8 @@ fn a_snapshot_is_the_same_bytes_however_it_is_worked_out() {
 /// What ships holds.
 #[test]
 fn the_library_is_what_it_says() {
-    let specs = flank::find_specs(&[repository("specs")]).expect("the library");
+    // no job of the library says by itself what end mills are like
+    let specs = flank::find_specs(&[repository("specs"), place(GROOVES)]).expect("the library");
     let requests: Vec<TestRequest> = specs.iter().map(TestRequest::new).collect();
     let result = test(&requests, &Unwatched).expect("nobody cancels");
     assert_eq!(result.failed, 0, "{result}");

@@ -65,7 +65,7 @@ pub use job::expect::model::{
 };
 pub use job::sample::spaced;
 pub use load::files::{Buffers, Disk, Files, FolderEntry};
-pub use load::{project_folder, read_file, read_other_file};
+pub use load::{project_folder, read_file, read_other_file, reason as unreadable_reason};
 pub use model::{
     Axis, BlockLength, Contact, ContactCondition, ContactQuantity, Coordinate, CutterPiece, Frame, GeneratedSurface,
     Generation, Job, LawSource, Machine, MilledArea, Milling, MillingClearance, MillingObstacle, MountingAxis, NcWord,

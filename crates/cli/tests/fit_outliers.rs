@@ -28,6 +28,27 @@ fn a_point_that_does_not_go_with_the_others_is_named() {
     assert!(stderr.contains("not measured: 1 of 45 points of concave"), "{stderr}");
 }
 
+/// A point so far off that the turn which it asks for takes others to the places of their neighbours: it is named, and not they.
+#[test]
+fn a_point_that_takes_all_others_along_is_named() {
+    let file = gauged("fit_far");
+    let far = rewritten(&file, "far.csv", |place, at, normal| {
+        let off = if place == [3, 5] { 50.0 } else { 0.0 };
+        plain(place, std::array::from_fn(|k| at[k] + off * normal[k]))
+    });
+    let deviation = ["deviation", PINION, "concave", "--measured", &far];
+    let fit = ["fit", PINION, "concave", "--measured", &far, "--vary", VARIED];
+    for arguments in [&deviation[..], &fit] {
+        let run = flank(arguments);
+        assert_eq!(run.status.code(), Some(1), "{arguments:?}");
+        let told = text(&run.stderr);
+        assert!(
+            told.contains("far.csv: row 3, column 5 lies ") && told.contains("takes all others along by its turn"),
+            "{told}"
+        );
+    }
+}
+
 /// By which a point is off, um.
 type Off<'a> = &'a dyn Fn([usize; 2]) -> f64;
 

@@ -537,6 +537,32 @@ fn a_rack_is_shifted_onto_its_place() {
     assert!(number(&found, "before_um") < 1e-6, "{found}");
 }
 
+/// A point that was written down 5 m off does not keep the others from their place: before, nothing was shifted, without a word.
+#[test]
+fn one_point_far_off_leaves_the_others_in_place() {
+    let out = folder("measure_far");
+    let rack = "specs/bodies/rack_body.chain";
+    measure(&out, &[rack, "--surface", "flank_minus"]);
+    let line = |([row, column], at, normal): &Nominal| {
+        let off = if [*row, *column] == [3, 5] { 5000.0 } else { 0.0 };
+        let [x, y, z]: [f64; 3] = std::array::from_fn(|k| at[k] + off * normal[k]);
+        format!("{row},{column},{x:?},{:?},{z:?}\n", y + 0.05)
+    };
+    let moved: String = nominal(&out.join("rack_body.grid.csv"), "flank_minus", "grid").iter().map(line).collect();
+    let file = written(&out, "far.csv", &format!("row,column,x,y,z\n{moved}"));
+    let folder = out.to_str().expect("a plain path");
+    let held = ["deviation", rack, "flank_minus", "--measured", &file, "--no-picture", "--out", folder, "--json"];
+    let fitted = ["fit", rack, "flank_minus", "--measured", &file, "--vary", "r.pressure_angle", "--json"];
+    for arguments in [&held[..], &fitted] {
+        let run = flank(arguments);
+        assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+        assert!(text(&run.stderr).contains("no deviation at 1 "), "{}", text(&run.stderr));
+        let told: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+        let shift = told["shift_mm"].as_f64().expect("a shift");
+        assert!((shift + 0.05).abs() < 1e-9, "{told}");
+    }
+}
+
 /// What is the profile and what the length is told by the surface, however wide or deep the sample is: a gear narrower than its teeth are
 /// deep, racks, whose teeth stand in the direction of x, and a short piece of a thread.
 #[test]

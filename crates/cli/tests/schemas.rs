@@ -220,7 +220,7 @@ fn texts_and_files() {
     judge.run(&import, 1);
     judge.run(&["test", "specs/tutorial", "--json"], 0);
     judge.has_met(&["flank.test/1"]);
-    judge.has_met(&["flank.check/1", "flank.fmt/1", "flank.explain/1", "flank.new/3", "flank.templates/3"]);
+    judge.has_met(&["flank.check/1", "flank.fmt/1", "flank.explain/1", "flank.new/4", "flank.templates/3"]);
     judge.has_met(&["flank.schemas/1", "flank.completions/1", "flank.man/1", "flank.import/2", "flank.failure/1"]);
 }
 

@@ -4,8 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flank::{
-    Buffers, ContactRequest, ContactResult, Disk, Failure, JobSelection, NotDoneKind, Project, SynthesisRequest,
-    SynthesisResult, Unwatched, contact, synthesis,
+    Buffers, ContactRequest, ContactResult, Disk, Failure, JobSelection, NotDoneKind, Project, RemarkKind,
+    SynthesisRequest, SynthesisResult, Unwatched, contact, synthesis,
 };
 
 /// Settings that wishes are made and met by, each with the change up to which it is drawn, in its unit.
@@ -50,6 +50,58 @@ fn rolled(set: Vec<(String, String)>) -> ContactResult {
     let mut found = Vec::new();
     contact(&request, &Unwatched, &mut |of| found.push(of)).expect("a contact");
     found.remove(0)
+}
+
+/// A setting that the gear and its mounting share does not change the pinion alone, and that is told.
+#[test]
+fn settings_that_the_mate_follows_are_told() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/pairs/shared.chain");
+    let text = "use \"bevel_19x62.chain\"
+        use \"../machines/bevel_pair.chain\"
+        job shared extends bevel_19x62 {
+            param height : length in -0.05 mm .. 0.05 mm = 0 mm
+            machine m = bevel_pair(shaft_angle: 95 deg, hypoid_offset: height)
+            want wish in drive_side = vertex(lengthwise: 0.36)
+        }";
+    let files = Buffers::over(Arc::new(Disk)).with(&spec, text.to_string());
+    let jobs =
+        JobSelection { project: Project::open(spec, Arc::new(files)), job: Some("shared".to_string()), set: vec![] };
+    let of = |vary: &str| {
+        let vary = vec![vary.to_string()];
+        synthesis(&SynthesisRequest { vary, ..SynthesisRequest::new(jobs.clone(), "wish") }, &Unwatched)
+            .expect("settings")
+    };
+    let told = |result: &SynthesisResult| result.remarks.iter().any(|remark| remark.kind == RemarkKind::MovesMate);
+    let (shared, own) = (of("height"), of("p.work_offset"));
+    assert!(told(&shared) && !told(&own), "{:?} {:?}", shared.remarks, own.remarks);
+}
+
+/// What a wish does to the backlash, of which it says nothing, is told: as `flank contact` tells it of the pair with both values.
+#[test]
+fn the_backlash_that_changes_is_told() {
+    let spec = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../specs/bodies/wished_body.chain");
+    let text = "use \"hypoid_pair_body.chain\"
+        job wished extends hypoid_pair_body {
+            want wish in drive_side = vertex(lengthwise: 0.52)
+        }";
+    let files = Buffers::over(Arc::new(Disk)).with(&spec, text.to_string());
+    let jobs =
+        JobSelection { project: Project::open(spec, Arc::new(files)), job: Some("wished".to_string()), set: vec![] };
+    let vary = vec!["p.ratio_of_roll".to_string()];
+    let found = synthesis(&SynthesisRequest { vary, ..SynthesisRequest::new(jobs.clone(), "wish") }, &Unwatched);
+    let found = found.expect("a setting");
+    let told = found.remarks.iter().find(|remark| remark.kind == RemarkKind::OtherBacklash).expect("it changes");
+    let ratio = format!("{}", found.settings[0].new);
+    for set in [vec![], vec![("wished.p.ratio_of_roll".to_string(), ratio)]] {
+        let drive_side = Some("drive_side".to_string());
+        let selection = JobSelection { set, ..jobs.clone() };
+        let request =
+            ContactRequest { contact: drive_side, no_picture: true, format: vec![], ..ContactRequest::new(selection) };
+        let mut rolled = Vec::new();
+        contact(&request, &Unwatched, &mut |of| rolled.push(of)).expect("a contact");
+        let normal = rolled[0].backlash.as_ref().expect("both sides are there").normal;
+        assert!(told.message.contains(&format!("{normal:.4} mm along the normal")), "{normal}: {}", told.message);
+    }
 }
 
 /// From -1 to 1, the same in every run.

@@ -77,9 +77,9 @@ impl Files for Disk {
 
     fn read(&self, real: &Path, most: usize) -> Result<String> {
         ask_plain(real)?;
-        let mut text = String::new();
-        std::fs::File::open(real)?.take((most as u64).saturating_add(1)).read_to_string(&mut text)?;
-        limited(text, most)
+        let mut bytes = Vec::new();
+        std::fs::File::open(real)?.take((most as u64).saturating_add(1)).read_to_end(&mut bytes)?;
+        if bytes.len() > most { Err(ErrorKind::FileTooLarge.into()) } else { decoded(bytes) }
     }
 
     fn entries(&self, folder: &Path, most: usize) -> Vec<FolderEntry> {
@@ -158,6 +158,22 @@ pub(crate) fn read_other(files: &dyn Files, real: &Path, most: usize) -> Result<
     let text = files.read(real, most)?;
     Ok(text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text))
 }
+
+/// The text that bytes are in UTF-8. Of another encoding of Unicode each letter of a spec has zeros, in which UTF-8 may see letters.
+fn decoded(bytes: Vec<u8>) -> Result<String> {
+    let head = &bytes[..bytes.len().min(ENCODING)];
+    let zeros = head.iter().filter(|byte| **byte == 0).count();
+    let is_marked = [[0xff, 0xfe], [0xfe, 0xff]].iter().any(|mark| head.starts_with(mark));
+    let encoding = match 8 * zeros {
+        most if most > 5 * head.len() && zeros < head.len() => "UTF-32",
+        half if half > 3 * head.len() && zeros < head.len() || is_marked => "UTF-16",
+        _ => return String::from_utf8(bytes).map_err(|_| ErrorKind::InvalidData.into()),
+    };
+    Err(Error::new(ErrorKind::InvalidData, format!("it is {encoding} text: save it as UTF-8")))
+}
+
+/// Bytes of a text by which its encoding is told.
+const ENCODING: usize = 1024;
 
 fn limited(text: String, most: usize) -> Result<String> {
     if text.len() > most { Err(ErrorKind::FileTooLarge.into()) } else { Ok(text) }

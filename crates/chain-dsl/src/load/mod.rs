@@ -313,8 +313,9 @@ pub(crate) fn tidy(path: &Path) -> PathBuf {
 }
 
 /// Why a file cannot be read, in words.
-pub(crate) fn reason(error: &std::io::Error) -> String {
+pub fn reason(error: &std::io::Error) -> String {
     match error.kind() {
+        ErrorKind::InvalidData if error.get_ref().is_some() => error.to_string(),
         ErrorKind::NotFound => "there is no such file".to_string(),
         ErrorKind::InvalidData => "it is not UTF-8 text".to_string(),
         ErrorKind::IsADirectory => "it is a folder".to_string(),

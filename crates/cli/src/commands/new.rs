@@ -32,9 +32,23 @@ pub(crate) fn run(arguments: &New) -> Result<Ending, Failure> {
             MadeKind::Machine => format!("now: machine m = {}(…) in a job that uses {}", made.name, made.spec),
             MadeKind::Tool => format!("now: tool t = {}(…) in a job that uses {}", made.name, made.spec),
         };
-        format!("wrote {}\n\n{now}\n", made.files.join(", "))
+        format!("wrote {}\n\n{}{now}\n", made.files.join(", "), left_out(&made.left_out))
     });
     Ok(Ending::Done)
+}
+
+/// What the library expects with its own values alone.
+fn left_out(expectations: &[String]) -> String {
+    if expectations.is_empty() {
+        return String::new();
+    }
+    let each: String = expectations.iter().map(|one| format!("  {}\n", words(one))).collect();
+    format!("left out, as it holds with the library's values and not with these:\n{each}\n")
+}
+
+/// On one line.
+fn words(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
 fn list(TemplateList { templates, together, machines, tools }: &TemplateList) -> String {

@@ -83,17 +83,71 @@ impl Gauged {
     /// If a point, moved by so much, does not belong to its place.
     pub(crate) fn check_places(&self, of: Named<'_, '_>, motion: f64) -> Result<(), Failure> {
         let Gauged { shown, counts: [rows, columns], .. } = self;
-        let Some((at, off, half)) = misplaced(&self.positions, &self.nominal, self.counts, (of.alignment(), motion))
-        else {
-            return Ok(());
-        };
-        let frame = &of.surface.frame;
-        let [row, column] = [at / columns + 1, at % columns + 1];
+        let alignment = of.alignment();
+        let misplaced = |motion: f64| self.misplaced((alignment, motion));
+        let Some(mut found) = misplaced(motion) else { return Ok(()) };
+        let place = |at: usize| format!("row {}, column {}", at / columns + 1, at % columns + 1);
+        // by what most points say, others may lie where they belong
+        if let Some(median) = alignment.median(&self.positions, &self.nominal) {
+            match (misplaced(median), self.farthest(alignment, median)) {
+                (Some(other), _) => found = other,
+                (None, Some((at, off))) if off > self.half_gap(at).unwrap_or(f64::INFINITY) => {
+                    return Err(format!(
+                        "{shown}: {} lies {off:.4} mm off its nominal point, and takes all others along by its {}: leave its numbers empty if \
+                         it was measured wrong",
+                        place(at),
+                        match alignment {
+                            Alignment::Turn => "turn",
+                            Alignment::Shift => "shift",
+                        }
+                    )
+                    .into());
+                }
+                (None, _) => {}
+            }
+        }
+        let (at, off, half) = found;
+        let (frame, place) = (&of.surface.frame, place(at));
         Err(format!(
-            "{shown}: row {row}, column {column} lies {off:.4} mm beside its nominal point, and half the way to the next one is {half:.4} mm: \
+            "{shown}: {place} lies {off:.4} mm beside its nominal point, and half the way to the next one is {half:.4} mm: \
              is this a grid of {rows} rows and {columns} columns (option `rows`, option `columns`) with this option `margin`, and are x, y, z in the frame {frame}?"
         )
         .into())
+    }
+}
+
+impl Gauged {
+    /// The first point that is nearer to where a neighbour should be than to its own nominal point: its place, how far beside it lies, and
+    /// half the way to the nearest neighbour, mm.
+    fn misplaced(&self, motion: (Alignment, f64)) -> Option<(usize, f64, f64)> {
+        let each = beside(&self.positions, &self.nominal, motion).into_iter().enumerate();
+        each.filter_map(|(at, off)| Some((at, off?, self.half_gap(at)?))).find(|(_, off, half)| off > half)
+    }
+
+    /// Half the way from a nominal point to the nearest neighbour, mm.
+    fn half_gap(&self, at: usize) -> Option<f64> {
+        let (nominal, [rows, columns]) = (&self.nominal, self.counts);
+        let (row, column) = (at / columns, at % columns);
+        let along = [(row > 0).then(|| at - columns), (row + 1 < rows).then_some(at + columns)];
+        let across = [(column > 0).then(|| at - 1), (column + 1 < columns).then_some(at + 1)];
+        let gap = |next: usize| {
+            let [from, to] = [at, next].map(|k| nominal[k].position);
+            (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt()
+        };
+        let solved = |next: &usize| nominal[*next].outcome == Outcome::Solved;
+        let next = along.into_iter().chain(across).flatten().filter(solved);
+        next.map(|next| 0.5 * gap(next)).reduce(f64::min)
+    }
+
+    /// The point that lies farthest off its nominal one, moved by so much: its place, and how far, mm.
+    fn farthest(&self, alignment: Alignment, motion: f64) -> Option<(usize, f64)> {
+        let pairs = self.positions.iter().zip(&self.nominal).enumerate();
+        let known =
+            pairs.filter(|(_, (_, point))| point.outcome == Outcome::Solved).filter_map(|(at, (found, point))| {
+                let found = alignment.moved((*found)?, motion);
+                Some((at, (0..3).map(|k| (found[k] - point.position[k]).powi(2)).sum::<f64>().sqrt()))
+            });
+        known.reduce(|a, b| if b.1 > a.1 { b } else { a })
     }
 }
 
@@ -109,30 +163,6 @@ fn counts(named: [usize; 2], area: GaugedArea) -> Result<[usize; 2], String> {
             }
         });
     Ok([rows?, columns?])
-}
-
-/// The first point that is nearer to where a neighbour should be than to its own nominal point: its place, how far beside it lies, and half
-/// the way to the nearest neighbour, mm.
-fn misplaced(
-    measured: &[Option<[f64; 3]>],
-    nominal: &[SurfacePoint],
-    [rows, columns]: [usize; 2],
-    motion: (Alignment, f64),
-) -> Option<(usize, f64, f64)> {
-    let half_gap = |at: usize| {
-        let (row, column) = (at / columns, at % columns);
-        let along = [(row > 0).then(|| at - columns), (row + 1 < rows).then_some(at + columns)];
-        let across = [(column > 0).then(|| at - 1), (column + 1 < columns).then_some(at + 1)];
-        let gap = |next: usize| {
-            let [from, to] = [at, next].map(|k| nominal[k].position);
-            (0..3).map(|k| (to[k] - from[k]).powi(2)).sum::<f64>().sqrt()
-        };
-        let solved = |next: &usize| nominal[*next].outcome == Outcome::Solved;
-        let next = along.into_iter().chain(across).flatten().filter(solved);
-        next.map(|next| 0.5 * gap(next)).reduce(f64::min)
-    };
-    let each = beside(measured, nominal, motion).into_iter().enumerate();
-    each.filter_map(|(at, off)| Some((at, off?, half_gap(at)?))).find(|(_, off, half)| off > half)
 }
 
 /// Where a machine found the surface.

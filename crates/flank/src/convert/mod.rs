@@ -506,6 +506,11 @@ impl<'j, 'g> Conversion<'j, 'g> {
             .map_err(|reason| format!("no explicit form; {} is solved numerically: {reason}", self.machine.name))
     }
 
+    /// Whether the tool touches anywhere, as far as solved points tell.
+    pub(crate) fn touches(&self) -> bool {
+        self.source.flanks.iter().any(|flank| flank.solved().next().is_some())
+    }
+
     /// How far the points of the tool that touch the flanks are off at most, over all positions, mm: the tool stands against the work as on
     /// the job's machine, but for motions that leave it unchanged.
     pub(crate) fn off(&self) -> f64 {

@@ -18,6 +18,7 @@ pub struct Words {
 }
 
 /// Something that a user gives, as it was given.
+#[derive(Clone)]
 pub(super) struct Given {
     /// What findings call the place where it was given.
     origin: String,

@@ -11,7 +11,9 @@ use serde::Serialize;
 use crate::exchange::changes::{Changes, Words};
 use crate::project::failure::Failure;
 use crate::project::findings::Findings;
+use crate::project::monitor::Unwatched;
 use crate::project::shown_path;
+use crate::testing::{TestRequest, test_spec};
 
 /// A job to be made of one of the library, or a machine or tool of it.
 #[derive(Clone, Debug)]
@@ -62,12 +64,31 @@ impl Made {
         Ok(self.files.iter().map(|(path, _)| shown_path(&out.join(path))).collect())
     }
 
+    /// What the job of this name is expected to be like and is not, as it is written; nothing where it does not compile.
+    ///
     /// # Errors
-    /// What is wrong with what was given, shown there, or with the files as they would stand in `out`.
-    fn compiled(&self, out: &Path) -> Result<(), Failure> {
+    /// If there is no place to try it, or no memory.
+    pub(super) fn failed(&self, name: &str) -> Result<Vec<String>, Failure> {
+        let trial = self.trial()?;
+        let request = TestRequest { snapshot: false, ..TestRequest::new(trial.path().join(&self.files[0].0)) };
+        let tested = test_spec(&request, &Unwatched)?;
+        let own = tested.items.into_iter().filter(|item| item.name == name);
+        let failed = own.flat_map(|item| item.expectations).filter(|expectation| !expectation.holds);
+        Ok(failed.map(|expectation| expectation.place.text).collect())
+    }
+
+    /// The files in a folder of their own.
+    fn trial(&self) -> Result<tempfile::TempDir, Failure> {
         let no_folder = |error| Failure::Input(format!("no temporary folder: {}", WriteError::from(error)));
         let trial = tempfile::tempdir().map_err(no_folder)?;
         put(trial.path(), &self.files)?;
+        Ok(trial)
+    }
+
+    /// # Errors
+    /// What is wrong with what was given, shown there, or with the files as they would stand in `out`.
+    fn compiled(&self, out: &Path) -> Result<(), Failure> {
+        let trial = self.trial()?;
         let file = trial.path().join(&self.files[0].0);
         let graph = Graph::new();
         let mut compilation = compile_file(&graph, &file, &[]);

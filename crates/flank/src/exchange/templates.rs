@@ -1,7 +1,7 @@
 //! A job of the library becomes one of the user's, with the machines and tools that it uses; so does a machine or a tool by itself.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use flank_chain_dsl::syntax::ast::{Change, Item, Job, JobStatement};
@@ -11,6 +11,7 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::exchange::changes::{Changes, Given, Words};
+use crate::exchange::expectations::{Expecting, Jobs, anew, inherited, own};
 use crate::exchange::library::{texts, used_by};
 use crate::exchange::made::{Made, MadeKind, NewJob};
 use crate::exchange::parts;
@@ -62,7 +63,7 @@ pub struct TemplateParameter {
 
 /// What `flank new` made of something in the library.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(tag = "schema", rename = "flank.new/3")]
+#[serde(tag = "schema", rename = "flank.new/4")]
 pub struct FromLibrary {
     /// Its name.
     pub name: String,
@@ -72,6 +73,8 @@ pub struct FromLibrary {
     pub spec: String,
     /// Files written, in their order: its own first.
     pub files: Vec<String>,
+    /// What the library expects of it that does not hold with other values, as it is written there: left out.
+    pub left_out: Vec<String>,
 }
 
 /// What the library has to start from.
@@ -109,12 +112,15 @@ pub fn template_parameters(template: &str) -> Result<Vec<TemplateParameter>, Fai
 /// Why there is nothing to start from under that name; what is wrong with what was given; what stands in the way.
 pub fn new_job(request: &NewJob) -> Result<FromLibrary, Failure> {
     let name = request.name.as_ref().map_or(&request.template, |name| &name.text);
-    let (kind, made) = match parts::find(&request.template) {
-        Some(part) => (part.kind, part.made(request)?),
-        None => (MadeKind::Job, find(&request.template)?.named(request)?),
+    let (kind, made, left_out) = match parts::find(&request.template) {
+        Some(part) => (part.kind, part.made(request)?, Vec::new()),
+        None => {
+            let (made, left_out) = find(&request.template)?.named(request)?;
+            (MadeKind::Job, made, left_out)
+        }
     };
     let files = made.write(&request.folder)?;
-    Ok(FromLibrary { name: name.clone(), kind, spec: files[0].clone(), files })
+    Ok(FromLibrary { name: name.clone(), kind, spec: files[0].clone(), files, left_out })
 }
 
 /// A job of the library.
@@ -126,6 +132,8 @@ struct Source {
     job: Job,
     /// Those with a value: of the jobs that it extends, then its own.
     parameters: Vec<TemplateParameter>,
+    /// What it takes from the jobs that it extends.
+    inherited: Vec<Expecting>,
 }
 
 /// The same with its texts.
@@ -139,13 +147,13 @@ struct Offer {
 fn offer() -> Offer {
     let mut offer = Offer { templates: BTreeMap::new(), together: BTreeMap::new() };
     let files: Vec<_> = texts().map(|(path, text)| (path, text, parse(text, FileId(0)).0)).collect();
-    let jobs = files.iter().flat_map(|(_, text, file)| {
+    let jobs = files.iter().flat_map(|(path, text, file)| {
         file.items.iter().filter_map(move |item| match item {
-            Item::Job(job) => Some((job.name.node.clone(), (*text, job.clone()))),
+            Item::Job(job) => Some((job.name.node.clone(), (*path, *text, job.clone()))),
             _ => None,
         })
     });
-    let known: HashMap<String, (&str, Job)> = jobs.collect();
+    let known: Jobs = jobs.collect();
     for (path, text, file) in files {
         let (mut jobs, mut variants) = (Vec::new(), Vec::new());
         for item in file.items {
@@ -160,8 +168,8 @@ fn offer() -> Offer {
         }
         if jobs.len() == 1 && variants.is_empty() {
             let (job, doc) = (jobs.remove(0), first_sentence(&file.doc));
-            let parameters = parameters(text, &job, &known);
-            offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job, parameters });
+            let (parameters, inherited) = (parameters(text, &job, &known), inherited(&job, &known));
+            offer.templates.insert(job.name.node.clone(), Source { path, text, doc, job, parameters, inherited });
         } else {
             let names = jobs.into_iter().map(|job| job.name.node).chain(variants);
             offer.together.insert(path, names.collect());
@@ -171,10 +179,10 @@ fn offer() -> Offer {
 }
 
 /// The parameters of a job that have a value, as it says them or as it takes them from the job that it extends.
-fn parameters(text: &str, job: &Job, known: &HashMap<String, (&str, Job)>) -> Vec<TemplateParameter> {
+fn parameters(text: &str, job: &Job, known: &Jobs) -> Vec<TemplateParameter> {
     let written = |span: Span| text[span.start as usize..span.end as usize].to_string();
     let parent = job.extends.as_ref().and_then(|parent| known.get(&parent.node));
-    let mut all = parent.map_or_else(Vec::new, |(text, parent)| parameters(text, parent, known));
+    let mut all = parent.map_or_else(Vec::new, |(_, text, parent)| parameters(text, parent, known));
     for parameter in &mut all {
         if let Some(change) = change(job, &parameter.name) {
             parameter.default = written(change.value.span);
@@ -238,8 +246,8 @@ fn find(name: &str) -> Result<Source, Failure> {
 }
 
 impl Source {
-    /// The job with its new name and values, and what it uses.
-    fn named(self, request: &NewJob) -> Result<Made, Failure> {
+    /// The job with its new name and values, and what it uses; and what is left out of what it is expected to be like.
+    fn named(self, request: &NewJob) -> Result<(Made, Vec<String>), Failure> {
         let own = Words { text: self.job.name.node.clone(), origin: String::new() };
         let name = request.name.as_ref().unwrap_or(&own);
         let mut values: Vec<(&str, Given)> = Vec::new();
@@ -255,8 +263,29 @@ impl Source {
             values.push((known, Given::value(known, value)));
         }
         values.iter().try_for_each(|(_, value)| value.check())?;
-        let (text, job) = self.with_places(&values.iter().map(|(name, _)| *name).collect::<Vec<_>>());
-        let places = values.into_iter().filter_map(|(parameter, value)| Some((place(&job, parameter)?, value)));
+        let whole = self.made((name, &values), &[])?;
+        let lost = if values.is_empty() { Vec::new() } else { self.lost(&whole, &name.text)? };
+        let made = if lost.is_empty() { whole } else { self.made((name, &values), &lost)? };
+        Ok((made, lost.into_iter().map(str::to_owned).collect()))
+    }
+
+    /// The expectations that are meant for the library's values, and do not hold with others.
+    fn lost(&self, made: &Made, name: &str) -> Result<Vec<&'static str>, Failure> {
+        let own = own(self.path, self.text, &self.job);
+        let all: Vec<&Expecting> = self.inherited.iter().chain(&own).collect();
+        let of_values: Vec<&str> =
+            all.into_iter().filter(|one| one.expected.is_of_values()).map(|one| one.text).collect();
+        if of_values.is_empty() {
+            return Ok(of_values);
+        }
+        let failed = made.failed(name)?;
+        Ok(of_values.into_iter().filter(|text| failed.iter().any(|other| other == text)).collect())
+    }
+
+    /// The job without expectations that are lost.
+    fn made(&self, (name, values): (&Words, &[(&str, Given)]), lost: &[&str]) -> Result<Made, Failure> {
+        let (text, job) = self.with_places(&values.iter().map(|(name, _)| *name).collect::<Vec<_>>(), lost);
+        let places = values.iter().cloned().filter_map(|(parameter, value)| Some((place(&job, parameter)?, value)));
         let changes = Changes::new(places.chain([(job.name.span, Given::name(name))]).collect());
         let text = changes.applied(&text);
         let mut files = vec![(self.path.with_file_name(format!("{}.chain", name.text)), text.clone())];
@@ -265,8 +294,8 @@ impl Source {
     }
 
     /// The job with the values of these parameters written in it, also where it takes them from the one that it extends.
-    fn with_places(&self, parameters: &[&str]) -> (Cow<'static, str>, Job) {
-        let (text, job) = self.without_own_values(!parameters.is_empty());
+    fn with_places(&self, parameters: &[&str], lost: &[&str]) -> (Cow<'static, str>, Job) {
+        let (text, job) = self.without(lost);
         let lacking = parameters.iter().filter(|name| place(&job, name).is_none());
         let lacking = self.parameters.iter().filter(|known| lacking.clone().any(|name| *name == known.name));
         let changes: Vec<String> = lacking.map(|known| format!("{}: {}", known.name, known.default)).collect();
@@ -282,18 +311,21 @@ impl Source {
         self.parsed(text)
     }
 
-    /// The job without expectations that are meant for the values which it has here, if it gets others.
-    fn without_own_values(&self, gets_others: bool) -> (Cow<'static, str>, Job) {
-        let own = |statement: &JobStatement| match statement {
-            JobStatement::Expect(expected) if expected.is_of_values() => Some(expected.span),
-            _ => None,
-        };
-        let places: Vec<Span> = self.job.statements.iter().filter_map(own).collect();
-        if !gets_others || places.is_empty() {
+    /// The job without these expectations: of those that it inherits it says the others itself.
+    fn without(&self, lost: &[&str]) -> (Cow<'static, str>, Job) {
+        if lost.is_empty() {
             return (Cow::Borrowed(self.text), self.job.clone());
         }
+        let is_lost = |one: &&Expecting| lost.contains(&one.text);
         let mut text = self.text.to_owned();
-        for place in places.iter().rev() {
+        if self.inherited.iter().any(|one| is_lost(&one)) {
+            let kept: Vec<&Expecting> = self.inherited.iter().filter(|one| !is_lost(one)).collect();
+            let folder = self.path.parent().unwrap_or(Path::new(""));
+            // before the brace that ends the job
+            text.insert_str(self.job.span.end as usize - 1, &anew(&kept, folder));
+        }
+        for one in own(self.path, self.text, &self.job).iter().filter(is_lost).rev() {
+            let place = one.expected.span;
             let (start, end) = (place.start as usize, place.end as usize);
             // with the line that it stands on
             let start = text[..start]

@@ -125,8 +125,12 @@ pub enum RemarkKind {
     NotLookedAt,
     /// A pair that is mounted wrongly has less than no backlash.
     NegativeBacklash,
+    /// The backlash of a pair is another one than it was.
+    OtherBacklash,
     /// A setting does not move the surface.
     MovesNothing,
+    /// A setting changes the mate or the mounting, too.
+    MovesMate,
     /// A measured point does not go with the others.
     Outlier,
     /// Deviations fit better in the other order of rows or columns.

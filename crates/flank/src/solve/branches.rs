@@ -93,9 +93,25 @@ pub(crate) fn kept_out(solved: &Solved<'_, '_>) -> Option<String> {
         format!("{} {low} .. {high} {}", of.name, units::symbol(of.dimension)).trim_end().to_string()
     });
     let taken: Vec<String> = taken.collect();
+    if let Some([one, other]) = disjoint(solved) {
+        let (one, other) = (&taken[one], &taken[other]);
+        return Some(format!("`keep` takes nothing: {one} and {other} are about the same value, and none is in both"));
+    }
     (!each.is_empty()).then(|| {
         let (which, place) = (last(each.len()), anchor(solved));
         format!("`keep` leaves out {which} at {place}: {}; it takes {}", each.join("; "), taken.join(", "))
+    })
+}
+
+/// Two conditions of a sample's `keep` on one value that no value meets, by their numbers; of a periodic unknown it might be a turn further on.
+fn disjoint(solved: &Solved<'_, '_>) -> Option<[usize; 2]> {
+    let keep = &solved.sample.keep;
+    let known = || solved.surface.unknowns.iter().zip(&solved.periodic);
+    let is_periodic = |of: &Coordinate<'_>| known().any(|(unknown, is)| *is && unknown.variable == of.value);
+    let pairs = (0..keep.len()).flat_map(|a| (a + 1..keep.len()).map(move |b| [a, b]));
+    pairs.into_iter().find(|pair| {
+        let [(one, (low, high)), (other, (other_low, other_high))] = pair.map(|k| &keep[k]);
+        one.value == other.value && !is_periodic(one) && (high < other_low || other_high < low)
     })
 }
 

@@ -36,6 +36,32 @@ pub(crate) fn left_by_edges<'g>(
     Some(Cut { by: by.name.clone(), counts, left: edges.left(points) })
 }
 
+/// The height of what is left over each point of a surface, mm, where it is known; nothing if the surface is not cut.
+pub(crate) fn heights<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    points: &[SurfacePoint],
+    session: Session,
+) -> Option<Vec<Option<f64>>> {
+    let height = |left: &Option<ScallopHeight>| match left {
+        Some(ScallopHeight::Cut { height, .. }) => Some(*height),
+        _ => None,
+    };
+    left_by_edges(job, surface, points, session).map(|cut| cut.left.iter().map(height).collect())
+}
+
+/// At how many points of a surface what is left is unknown, and why, a line each.
+pub(crate) fn unknown_of<'g>(
+    job: &Job<'g>,
+    surface: &GeneratedSurface<'g>,
+    points: &[SurfacePoint],
+    session: Session,
+) -> Vec<String> {
+    let cut = left_by_edges(job, surface, points, session);
+    let remarks = unknown(std::iter::once((surface.name.as_str(), cut.as_ref())));
+    remarks.into_iter().flat_map(|remark| std::iter::once(remark.message).chain(remark.details)).collect()
+}
+
 impl Cut {
     /// The height of what is left, then the counts of the edge that leaves it.
     pub(crate) fn fields(&self) -> Vec<Field> {

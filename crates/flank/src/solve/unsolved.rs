@@ -80,6 +80,7 @@ pub(crate) fn reasons(
     );
     if summary.count(Outcome::NotConverged { iterations: 0 }) > 0 {
         reasons.extend(short_tables(solved));
+        reasons.extend(profile_ends(solved.surface));
     }
     reasons.extend(branches::kept_out(solved));
     if solved.needed.is_empty() && summary.has_unreached() {
@@ -100,9 +101,11 @@ pub(crate) fn hints(
     let is_solved = points.iter().any(|point| point.outcome == Outcome::Solved);
     let is_most = !is_solved && 2 * points.iter().filter(is_cut).count() > points.len();
     let body = is_most.then(|| turned_body(of, surface, points)).flatten();
+    let is_lost = |point: &SurfacePoint| matches!(point.outcome, Outcome::NotConverged { .. });
+    let ends = if points.iter().any(is_lost) { profile_ends(surface) } else { Vec::new() };
     let needed = reach::needed(surface, points);
     let needed = needed.iter().map(|needed| needed.text(of.0, surface));
-    body.into_iter().chain(needed).chain(touching::told(of.0, surface, points)).collect()
+    body.into_iter().chain(ends).chain(needed).chain(touching::told(of.0, surface, points)).collect()
 }
 
 /// Whether another surface has points, which is made by another piece of the same surface of the tool: their steel lies on one side.
@@ -154,6 +157,29 @@ fn short_tables(solved: &Solved<'_, '_>) -> Vec<String> {
         })
     });
     short.collect()
+}
+
+/// The splines at which profiles end: unlike lines and arcs they do not go on, so that no point out of range is found there.
+fn profile_ends(surface: &GeneratedSurface<'_>) -> Vec<String> {
+    let position = surface.surface.position.0;
+    let graph = position[0].graph();
+    let curves = graph.curves_in(&position);
+    let ended = surface.unknowns.iter().filter_map(|of| {
+        let piece = of.piece.as_ref()?;
+        let run = of.variable.as_variable()?;
+        let is_spline = curves.iter().any(|(_, at)| graph.variables_of(&[*at]).contains(&run));
+        let ends = [0, 1].into_iter().filter(|k| piece.beside[*k].is_none());
+        let ends: Vec<String> = ends.map(|k| units::text(of.dimension, [of.low, of.high][k], 4)).collect();
+        (is_spline && !ends.is_empty()).then(|| {
+            format!(
+                "the profile that {} runs along ends with the spline {}, at {}: beyond there are no points",
+                of.name,
+                piece.name,
+                ends.join(" and ")
+            )
+        })
+    });
+    ended.collect()
 }
 
 /// At which ends of the grid points lie: `, at the toe and the tip`. An end has at least half of its line among them; where none

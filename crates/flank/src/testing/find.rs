@@ -3,6 +3,8 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use flank_chain_dsl::unreadable_reason;
+
 use crate::project::failure::Failure;
 use crate::project::shown_path;
 
@@ -24,7 +26,8 @@ pub fn find_specs(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         }
     };
     for path in paths {
-        let unreadable = |error: &std::io::Error| format!("cannot read `{}`: {error}", shown_path(path));
+        let unreadable =
+            |error: &std::io::Error| format!("cannot read `{}`: {}", shown_path(path), unreadable_reason(error));
         let kind = std::fs::metadata(path).map_err(|error| unreadable(&error))?;
         if !kind.is_dir() {
             add(path.clone());

@@ -3,8 +3,7 @@
 use flank_chain_dsl::{
     Dimension, Expected, Job, PointColumn, PoseDifference, PoseTolerance, Process, Quantity, Sample,
 };
-use flank_export::Values;
-use flank_expr::{Expr, ScalarEvaluator, Tape};
+use flank_expr::Expr;
 use flank_solver::{Outcome, SurfacePoint};
 
 use crate::compare::deviation;
@@ -14,9 +13,10 @@ use crate::project::failure::Failure;
 use crate::project::requests::Onto;
 use crate::project::units;
 use crate::solve::required::RequiredNumber;
-use crate::solve::{self, SolveOptions, geometry, travel};
+use crate::solve::{self, SolveOptions, cut, travel};
 use crate::testing::points::{Tested, place};
 use crate::testing::quantities::{FOLLOWED, Known};
+use crate::testing::values::{LEFT, values};
 
 /// What was found where a formula has no value.
 const NO_NUMBER: &str = "no number: the formula has no value there";
@@ -151,6 +151,12 @@ pub(super) fn of_requirement(tested: &Tested<'_, '_>, index: usize, number: usiz
     let required = RequiredNumber::all(surface, &tested.job.bindings());
     let missed: Vec<(usize, f64)> = required[number].missed(points).collect();
     let all = units::counted(points.len(), "point");
+    if points.iter().all(|point| point.outcome != Outcome::Solved) {
+        return Verdict {
+            details: tested.hints(index),
+            ..Verdict::lost(format!("no point of {} is solved", surface.name))
+        };
+    }
     if missed.is_empty() {
         return Verdict { holds: true, found: format!("at {all} of {}", surface.name), details: Vec::new() };
     }
@@ -229,59 +235,23 @@ fn at_points<'g>(
     let surface = tested.surface(index);
     let Some(sample) = &surface.sample else { return Verdict::lost("no sample") };
     let points = tested.points(index);
-    let values = values(tested, index, (sample, points), (value, known));
+    let values = values(tested, index, (Some(sample), points), (value, known));
     let mut verdict = worst((sample, points), &values, (&surface.name, dimension), wanted);
-    let is_induced = known.iter().any(|(name, variable)| {
-        let id = variable.as_variable();
-        name.starts_with("induced_") && id.is_some_and(|id| value.graph().variables_of(&[value]).contains(&id))
-    });
-    if is_induced && surface.generation.process != Process::Envelope {
+    let used = value.graph().variables_of(&[value]);
+    let is_named = |start: &str| {
+        let is_used = |variable: &Expr<'g>| variable.as_variable().is_some_and(|id| used.contains(&id));
+        known.iter().any(|(name, variable)| name.starts_with(start) && is_used(variable))
+    };
+    if is_named("induced_") && surface.generation.process != Process::Envelope {
         let of_tool = "induced curvatures are of an envelope and the tool that touches it: this surface is none";
         verdict.details = vec![of_tool.to_string()];
     } else if !verdict.holds {
         verdict.details.extend(tested.hints(index));
+        if is_named(LEFT) {
+            verdict.details.extend(cut::unknown_of(tested.job, surface, points, tested.session));
+        }
     }
     verdict
-}
-
-/// A function of points at those that are solved.
-fn values<'g>(
-    tested: &Tested<'_, 'g>,
-    index: usize,
-    (sample, points): (&Sample<'g>, &[SurfacePoint]),
-    (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
-) -> Vec<Option<f64>> {
-    let surface = tested.surface(index);
-    let graph = value.graph();
-    let value = graph.substitute(&[value], &tested.job.bindings());
-    let used = graph.variables_of(&value);
-    let known: Vec<&(&str, Expr<'g>)> =
-        known.iter().filter(|(_, variable)| variable.as_variable().is_some_and(|id| used.contains(&id))).collect();
-    let fields = match known[..] {
-        [] => Vec::new(),
-        _ => geometry::fields(tested.job, surface, sample, points),
-    };
-    let columns: Vec<Option<&Values>> = known
-        .iter()
-        .map(|(name, _)| fields.iter().find(|field| field.name == *name).map(|field| &field.values))
-        .collect();
-    let inputs: Vec<Expr<'g>> =
-        surface.surface.unknowns.iter().copied().chain(known.iter().map(|(_, variable)| *variable)).collect();
-    let tape = Tape::new(&value, &inputs).expect("a job without errors leaves nothing unbound");
-    let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
-    let at = |(k, point): (usize, &SurfacePoint)| {
-        if point.outcome != Outcome::Solved {
-            return None;
-        }
-        let mut input = point.unknowns.clone();
-        for column in &columns {
-            let Some(Values::Scalars(values)) = column else { return None };
-            input.push(values.at(k)?);
-        }
-        evaluator.run(&input, &mut out);
-        Some(out[0])
-    };
-    points.iter().enumerate().map(at).collect()
 }
 
 fn of_table<'g>(
@@ -291,7 +261,7 @@ fn of_table<'g>(
 ) -> Verdict {
     let surface = tested.surface(index);
     let [PointColumn::Coordinate(first), PointColumn::Coordinate(second), compared @ ..] = columns else {
-        return Verdict::lost("points are found by coordinates, not by curvatures");
+        return Verdict::lost("points are found by coordinates, not by what is known of them");
     };
     let at = rows.iter().map(|row| [row[0], row[1]]).collect();
     let (sample, points) = tested.generated(index, [first.clone(), second.clone()], at);
@@ -300,12 +270,12 @@ fn of_table<'g>(
     for (k, column) in compared.iter().enumerate() {
         let (name, dimension, found) = match column {
             PointColumn::Coordinate(of) => {
-                (of.name.as_str(), of.dimension, values(tested, index, (&sample, &points), (of.value, &[])))
+                (of.name.as_str(), of.dimension, values(tested, index, (Some(&sample), &points), (of.value, &[])))
             }
-            PointColumn::Curvature(name) => {
+            PointColumn::Known(name, dimension) => {
                 let variable = graph.variable(*name);
-                let found = values(tested, index, (&sample, &points), (variable, &[(*name, variable)]));
-                (*name, Dimension::LENGTH.power(-1), found)
+                let found = values(tested, index, (Some(&sample), &points), (variable, &[(*name, variable)]));
+                (*name, *dimension, found)
             }
         };
         let apart: Vec<Option<f64>> = found.iter().zip(rows).map(|(value, row)| Some((*value)? - row[2 + k])).collect();
@@ -397,6 +367,10 @@ fn of_travel(tested: &Tested<'_, '_>, machine: Option<&str>) -> Result<Verdict, 
     let runs = travel::runs(tested.job, &solved);
     let of = |name: &str| machine.is_none_or(|machine| machine == name);
     let ended: Vec<_> = runs.iter().filter(|run| of(run.machine()) && run.is_beyond().is_some()).collect();
+    let has_travel = runs.iter().any(|run| of(run.machine()) && run.axis.travel.is_some());
+    if ended.is_empty() && has_travel && !solved.is_empty() {
+        return Ok(Verdict::lost("no point of the job is solved: nothing says how far its axes move"));
+    }
     let beyond = travel::beyond(tested.job, &solved);
     let prefix = machine.map(|machine| format!("{machine}."));
     let beyond = beyond.into_iter().filter(|one| {
@@ -431,6 +405,10 @@ fn on<'g>(
         let details = told.into_iter().map(|why| why.message).collect();
         let found = format!("{} does not do the same", conversion.machine.name);
         return Ok(Verdict { holds: false, found, details });
+    }
+    if !conversion.touches() {
+        let found = format!("no point of {} is solved: nothing says where its tool touches", surface.name);
+        return Ok(Verdict { holds: false, found, details: Vec::new() });
     }
     let off = conversion.off();
     let found = format!("off by up to {}", precise(Dimension::LENGTH, off));

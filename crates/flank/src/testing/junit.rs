@@ -32,7 +32,9 @@ fn suite(spec: &TestedSpec, out: &mut String) {
     };
     for item in &spec.items {
         for expectation in &item.expectations {
-            let told = || [std::slice::from_ref(&expectation.found), &expectation.details].concat().join("; ");
+            let place = &expectation.place;
+            let at = format!("{}:{}:{}", place.file, place.line, place.column);
+            let told = || [&[at, expectation.found.clone()], &expectation.details[..]].concat().join("; ");
             case(&item.name, &expectation.expected, (!expectation.holds).then(told));
         }
     }

@@ -11,6 +11,7 @@ pub(crate) mod result;
 mod run;
 mod snapshot;
 mod text;
+mod values;
 
 pub use find::find_specs;
 pub use junit::junit;

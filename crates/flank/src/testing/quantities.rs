@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use flank_chain_dsl::{ContactNumber, DeviationNumber, Expected, Job, PointSet, Quantity, SolidNumber};
-use flank_expr::{Expr, Graph, ScalarEvaluator, Tape};
+use flank_expr::{Expr, Graph};
 use flank_solver::Body;
 
 use crate::compare::deviation;
@@ -18,8 +18,11 @@ use crate::project::failure::Failure;
 use crate::project::remark::RemarkKind;
 use crate::project::requests::{ContactRequest, JobSelection, Onto};
 use crate::project::spec::Origin;
+use crate::project::units::counted;
 use crate::solve::body::{refusal, space};
+use crate::solve::cut;
 use crate::testing::points::Tested;
+use crate::testing::values::values;
 
 /// Positions of a pitch at which contacts are looked at, and of a motion at which other machines are.
 const POSITIONS: u32 = 60;
@@ -64,8 +67,8 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
             Quantity::Contact { contact, number } => self.of_contact(*contact, *number),
             Quantity::Solid { solid, number } => self.of_solid(*solid, *number),
             Quantity::Deviation { surfaces, number } => self.of_deviation(surfaces, *number),
-            Quantity::Extreme { surface, over, value, is_highest } => {
-                self.extreme(*surface, *over, (*value, *is_highest))
+            Quantity::Extreme { surface, over, value, known, is_highest } => {
+                self.extreme((*surface, *over), (*value, known), *is_highest)
             }
             Quantity::Position { onto, axis, at } => self.position(onto, axis, at),
         }
@@ -201,17 +204,23 @@ impl<'t, 'j, 'g> Known<'t, 'j, 'g> {
         Ok(find(self.jobs, name)?)
     }
 
-    fn extreme(&self, index: usize, over: PointSet, (value, is_highest): (Expr<'g>, bool)) -> Result<Number, Failure> {
+    fn extreme(
+        &self,
+        (index, over): (usize, PointSet),
+        (value, known): (Expr<'g>, &[(&'static str, Expr<'g>)]),
+        is_highest: bool,
+    ) -> Result<Number, Failure> {
         let points = self.tested.set(index, over)?;
         let surface = self.tested.surface(index);
-        let value = self.graph.substitute(&[value], &self.tested.job.bindings());
-        let tape = Tape::new(&value, &surface.surface.unknowns).expect("a job without errors leaves nothing unbound");
-        let (mut evaluator, mut out) = (ScalarEvaluator::new(&tape), [0.0]);
-        let values = points.iter().map(|point| {
-            evaluator.run(&point.unknowns, &mut out);
-            out[0]
-        });
-        let found = values.reduce(if is_highest { f64::max } else { f64::min });
+        let values = values(self.tested, index, (surface.sample.as_ref(), &points), (value, known));
+        let unknown = values.iter().filter(|value| value.is_none()).count();
+        if unknown > 0 {
+            let all = counted(points.len(), "point");
+            let why = cut::unknown_of(self.tested.job, surface, &points, self.tested.session);
+            let why = why.first().map_or(String::new(), |why| format!(": {why}"));
+            return Ok(Err(format!("{unknown} of {all} of {} have no such value{why}", surface.name)));
+        }
+        let found = values.into_iter().flatten().reduce(if is_highest { f64::max } else { f64::min });
         Ok(found.ok_or_else(|| format!("{} has no such point", surface.name)))
     }
 

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 
 use flank_chain_dsl::limits::FILE_BYTES;
-use flank_chain_dsl::{Compilation, Expectation, ExpectedError, Job, Request, Span, compile_request};
+use flank_chain_dsl::{Compilation, Expectation, ExpectedError, Job, Request, Span, closest, compile_request};
 use flank_expr::Graph;
 use rayon::prelude::*;
 
@@ -39,9 +39,16 @@ pub fn test(requests: &[TestRequest], monitor: &dyn Monitor) -> Result<TestResul
     tested.sort_by_key(|(number, _)| *number);
     let result = TestResult::of_specs(tested.into_iter().map(|(_, spec)| spec).collect());
     match requests.iter().find_map(|request| request.filter.as_ref()) {
-        Some(filter) if !result.specs.iter().any(TestedSpec::says_something) => Err(Failure::Input(format!(
-            "option `filter {filter}` takes no job and no machine: it is a part of `FILE:NAME`"
-        ))),
+        Some(filter) if !result.specs.iter().any(TestedSpec::says_something) => {
+            let names =
+                result.specs.iter().flat_map(|spec| spec.names.iter().map(|name| format!("{}:{name}", spec.file)));
+            let names: Vec<String> = names.collect();
+            let known = match closest(filter, names.iter().map(String::as_str)).or(names.first().map(String::as_str)) {
+                Some(near) => format!("it is a part of `FILE:NAME`, as in `{near}`"),
+                None => "there is none that is tested".to_string(),
+            };
+            Err(Failure::Input(format!("option `filter {filter}` takes no job and no machine: {known}")))
+        }
         _ => Ok(result),
     }
 }
@@ -64,7 +71,10 @@ pub fn test_spec(request: &TestRequest, monitor: &dyn Monitor) -> Result<TestedS
     let compile = Request { files: project.shared_files(), ..Request::default() };
     let compilation = compile_request(&graph, project.file(), &compile);
     let findings = Findings::new(&compilation.diagnostics, &compilation.sources);
+    let of_machines = compilation.machines.iter().filter(|machine| !machine.expectations.is_empty());
+    let names = of_machines.map(|machine| &machine.name).chain(compilation.jobs.iter().map(|job| &job.name));
     let nothing = TestedSpec {
+        names: names.cloned().collect(),
         file: shown_path(project.file()),
         items: Vec::new(),
         findings,

@@ -12,6 +12,9 @@ impl Display for TestResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.specs.iter().try_for_each(|spec| write!(f, "{spec}"))?;
         let tested = self.specs.iter().filter(|spec| spec.says_something()).count();
+        if tested == 0 {
+            return writeln!(f, "nothing is tested: no job, and no machine that expects something by itself");
+        }
         let specs = units::counted(tested, "spec");
         let failed = match self.failed {
             0 => "all hold".to_string(),
@@ -67,8 +70,11 @@ impl Display for TestedSpec {
         }
         for item in &self.items {
             for expectation in item.expectations.iter().filter(|expectation| !expectation.holds) {
-                let at = format!("{}:{}", expectation.place.line, expectation.place.column);
-                writeln!(f, "  {}:{at}: {}", item.name, shortened(&expectation.expected))?;
+                let place = &expectation.place;
+                // what a job inherits stands in another file
+                let from = if place.file == self.file { String::new() } else { format!(" from {}", place.file) };
+                let at = format!("{from}:{}:{}", place.line, place.column);
+                writeln!(f, "  {}{at}: {}", item.name, shortened(&expectation.expected))?;
                 writeln!(f, "    found: {}", expectation.found)?;
                 expectation.details.iter().try_for_each(|line| writeln!(f, "    {line}"))?;
             }

@@ -60,31 +60,39 @@ impl Alignment {
     #[must_use]
     pub fn apart(self, from: [f64; 3], to: [f64; 3]) -> f64 {
         match self {
-            Alignment::Turn => {
-                let apart = to[1].atan2(to[0]) - from[1].atan2(from[0]);
-                apart - std::f64::consts::TAU * (apart / std::f64::consts::TAU).round()
-            }
+            Alignment::Turn => self.shorter(to[1].atan2(to[0]) - from[1].atan2(from[0])),
             Alignment::Shift => to[1] - from[1],
         }
     }
 
-    /// The motion on average from measured points to nominal ones; `None` where no place has both.
+    /// The motion from measured points to nominal ones that half of them exceed: one that lies far off does not take the others along.
+    /// `None` where no place has both.
     #[must_use]
-    pub fn mean(self, measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
+    pub fn median(self, measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
         let pairs = measured.iter().zip(nominal).filter(|(_, point)| point.outcome == Outcome::Solved);
-        let known = pairs.filter_map(|(measured, point)| Some(((*measured)?, point.position)));
+        let ways = pairs.filter_map(|(measured, point)| Some(self.apart((*measured)?, point.position)));
+        let ways: Vec<f64> = ways.filter(|way| way.is_finite()).collect();
+        let near = self.amid(&ways)?;
+        let mut ways: Vec<f64> = ways.into_iter().map(|way| near + self.shorter(way - near)).collect();
+        ways.sort_by(f64::total_cmp);
+        let [low, high] = [(ways.len() - 1) / 2, ways.len() / 2].map(|k| ways[k]);
+        Some(self.shorter(0.5 * (low + high)))
+    }
+
+    /// A motion that lies amid others, so that none of them is half a turn away unless they are all around.
+    fn amid(self, ways: &[f64]) -> Option<f64> {
+        let [sine, cosine] = match self {
+            Alignment::Turn => ways.iter().fold([0.0; 2], |[s, c], way| [s + way.sin(), c + way.cos()]),
+            Alignment::Shift => [0.0; 2],
+        };
+        (!ways.is_empty()).then(|| sine.atan2(cosine))
+    }
+
+    /// The same motion, the shorter way round.
+    fn shorter(self, by: f64) -> f64 {
         match self {
-            Alignment::Turn => {
-                let [sine, cosine] = known.fold([0.0; 2], |[sine, cosine], ([x, y, _], [to_x, to_y, _])| {
-                    [sine + x * to_y - y * to_x, cosine + x * to_x + y * to_y]
-                });
-                (sine != 0.0 || cosine != 0.0).then(|| sine.atan2(cosine))
-            }
-            Alignment::Shift => {
-                let [sum, count] =
-                    known.fold([0.0; 2], |[sum, count], (from, to)| [sum + to[1] - from[1], count + 1.0]);
-                (count > 0.0).then(|| sum / count)
-            }
+            Alignment::Turn => by - std::f64::consts::TAU * (by / std::f64::consts::TAU).round(),
+            Alignment::Shift => by,
         }
     }
 

@@ -70,14 +70,18 @@ impl Inspection {
     /// If there are not as many points of the one as of the other.
     #[must_use]
     pub fn best_motion(&self, measured: &[Option<[f64; 3]>], nominal: &[SurfacePoint]) -> Option<f64> {
-        let mut by = self.alignment.mean(measured, nominal)?;
-        for _ in 0..MOST_STEPS {
+        let mut by = self.alignment.median(measured, nominal)?;
+        for number in 0..MOST_STEPS {
             let deviations = self.deviations(measured, nominal, by);
             let known = deviations.iter().zip(nominal).filter_map(|(off, point)| Some(((*off)?, point)));
             let [off, levers, arcs] = known.fold([0.0; 3], |[off, levers, arcs], (one, point)| {
                 let lever = self.alignment.lever(point.position, point.normal);
                 [off + one * lever, levers + lever * lever, arcs + self.alignment.arc(point.position).powi(2)]
             });
+            // points that are far off took all along to where none has a foot
+            if number > 0 && arcs == 0.0 {
+                return self.alignment.median(measured, nominal);
+            }
             if levers <= UNMOVED.powi(2) * arcs {
                 return None;
             }

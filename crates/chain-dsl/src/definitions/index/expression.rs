@@ -6,7 +6,7 @@ use crate::diagnostics::source::Name;
 use crate::syntax::ast::{Call, Dimension, Expression, ExpressionKind, Path, Range};
 
 /// What every point has, and what samples and milling passes run by.
-const OF_POINTS: [&str; 19] = [
+const OF_POINTS: [&str; 20] = [
     "x",
     "y",
     "z",
@@ -26,6 +26,7 @@ const OF_POINTS: [&str; 19] = [
     "k2",
     "gaussian_curvature",
     "mean_curvature",
+    "left",
 ];
 
 /// What a flank of a blank is asked for by.

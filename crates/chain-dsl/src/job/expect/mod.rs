@@ -43,6 +43,15 @@ const ITSELF: &str = "it compares a surface with itself";
 
 /// Curvatures of points, by their names in tables.
 const CURVATURES: [&str; 4] = ["k1", "k2", "induced_k1", "induced_k2"];
+/// What single edges leave over a point of a surface that they cut, by its name in tables.
+const LEFT: &str = "left";
+
+/// What is known of the points of a surface beside its unknowns.
+fn known_of_points(surface: &GeneratedSurface<'_>) -> Vec<(&'static str, Dimension)> {
+    let curvatures = CURVATURES.map(|name| (name, Dimension::LENGTH.power(-1)));
+    let left = surface.cut_by.map(|_| (LEFT, Dimension::LENGTH));
+    curvatures.into_iter().chain(left).collect()
+}
 
 /// Reports something wrong with an expectation.
 fn wrong(context: &mut Context<'_>, span: Span, message: String, help: impl Into<String>) {
@@ -421,7 +430,7 @@ impl<'g> Builder<'_, 'g> {
         }
     }
 
-    /// What an expression at the points of a surface may name: all that a sample's coordinates may, and curvatures.
+    /// What an expression at the points of a surface may name: all that a sample's coordinates may, curvatures, and what edges leave.
     fn scope_at_points(
         &self,
         context: &mut Context<'g>,
@@ -429,22 +438,17 @@ impl<'g> Builder<'_, 'g> {
         span: Span,
     ) -> Option<(Scope<'g>, Vec<(&'static str, Expr<'g>)>)> {
         let mut scope = sample::scope_at_points(context, &self.surfaces[surface].0, &self.scope, span)?;
-        let known = CURVATURES.map(|name| (name, context.variable(name, Role::Quantity, f64::NAN)));
-        for (name, variable) in known {
-            scope.insert(name.to_string(), Value::Scalar(variable, Dimension::LENGTH.power(-1)));
+        let mut known = Vec::new();
+        for (name, dimension) in known_of_points(&self.surfaces[surface].0) {
+            // `left` is also a word for one of two sides, and what a job calls so is meant
+            if name == LEFT && scope.contains_key(name) {
+                continue;
+            }
+            let variable = context.variable(name, Role::Quantity, f64::NAN);
+            scope.insert(name.to_string(), Value::Scalar(variable, dimension));
+            known.push((name, variable));
         }
-        Some((scope, known.to_vec()))
-    }
-
-    /// A function of the points of a surface.
-    fn at_points(
-        &self,
-        context: &mut Context<'g>,
-        surface: usize,
-        written: &ast::Expression,
-    ) -> Option<(Expr<'g>, Dimension)> {
-        let scope = sample::scope_at_points(context, &self.surfaces[surface].0, &self.scope, written.span)?;
-        self.scalar_at_points(context, surface, written, &scope)
+        Some((scope, known))
     }
 
     fn scalar_at_points(

@@ -64,7 +64,7 @@ pub enum Expected<'g> {
         surface: usize,
         /// The function of its unknowns, and of what follows.
         value: Expr<'g>,
-        /// What is known of points beside their unknowns: curvatures by their names in tables.
+        /// What is known of points beside their unknowns: curvatures, and what edges leave, by their names in tables.
         known: Vec<(&'static str, Expr<'g>)>,
         /// Of the value.
         dimension: Dimension,
@@ -143,8 +143,8 @@ impl PoseTolerance {
 pub enum PointColumn<'g> {
     /// A coordinate of points, or an unknown.
     Coordinate(Coordinate<'g>),
-    /// A curvature, by its name in tables, 1/mm.
-    Curvature(&'static str),
+    /// What is known of points beside their unknowns, by its name in tables: a curvature, or what edges leave.
+    Known(&'static str, Dimension),
 }
 
 /// What is known of a job once it is solved.
@@ -177,8 +177,10 @@ pub enum Quantity<'g> {
         surface: usize,
         /// Which points.
         over: PointSet,
-        /// The function of its unknowns.
+        /// The function of its unknowns, and of what follows.
         value: Expr<'g>,
+        /// What is known of points beside their unknowns, by its names in tables.
+        known: Vec<(&'static str, Expr<'g>)>,
         /// Whether the largest is meant.
         is_highest: bool,
     },

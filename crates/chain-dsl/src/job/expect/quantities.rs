@@ -233,9 +233,10 @@ impl<'g> Builder<'_, 'g> {
                 return wrong_call(context, call, what, example);
             }
             let (surface, over) = self.point_set(context, of, job)?;
-            let (value, dimension) = self.at_points(context, surface, &second.value)?;
+            let (scope, known) = self.scope_at_points(context, surface, second.value.span)?;
+            let (value, dimension) = self.scalar_at_points(context, surface, &second.value, &scope)?;
             let is_highest = name == "highest";
-            return Some(Found::quantity(Quantity::Extreme { surface, over, value, is_highest }, dimension));
+            return Some(Found::quantity(Quantity::Extreme { surface, over, value, known, is_highest }, dimension));
         };
         let surface = self.finished(context, of, job)?;
         let own = format!("{}.{}", job.name.node, self.surfaces[surface].0.name);

@@ -12,7 +12,7 @@ use crate::values::dimension::Dimension;
 use crate::values::table_files::{self, Reason};
 
 use super::model::PointColumn;
-use super::{CURVATURES, wrong};
+use super::{known_of_points, wrong};
 
 const EXAMPLE: &str = "for example `table(\"reference.csv\", z, rho, x, y)`, or with the heads of its columns `table(\"reference.csv\", z, rho: R, x: X)`";
 
@@ -76,12 +76,13 @@ fn column<'g>(
     key: &Name,
     surface: &GeneratedSurface<'g>,
 ) -> Option<(PointColumn<'g>, Dimension)> {
-    if let Some(name) = CURVATURES.iter().find(|name| **name == key.node) {
-        return Some((PointColumn::Curvature(name), Dimension::LENGTH.power(-1)));
+    let beside = known_of_points(surface);
+    if let Some((name, dimension)) = beside.iter().find(|(name, _)| *name == key.node) {
+        return Some((PointColumn::Known(name, *dimension), *dimension));
     }
     let Some(found) = surface.coordinate(&key.node) else {
         let known = surface.coordinates();
-        let known = known.iter().map(|coordinate| coordinate.name.as_str()).chain(CURVATURES);
+        let known = known.iter().map(|coordinate| coordinate.name.as_str()).chain(beside.iter().map(|(name, _)| *name));
         context.unknown(key, "coordinate of points", known);
         return None;
     };

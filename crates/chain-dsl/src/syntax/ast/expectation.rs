@@ -88,8 +88,18 @@ impl File {
     }
 }
 
+/// Significant digits of a number that nobody chose.
+const WORKED_OUT: usize = 7;
+
+/// Significant digits of a number as it is written at its shortest.
+fn digits(value: f64) -> usize {
+    let shortest = format!("{value:e}");
+    shortest.split('e').next().unwrap_or_default().bytes().filter(u8::is_ascii_digit).count()
+}
+
 impl Expectation {
-    fn tables(&self) -> Vec<String> {
+    /// The tables that it names, as it names them.
+    pub fn tables(&self) -> Vec<String> {
         let mut found = Vec::new();
         self.each(&mut |part| {
             if let ExpressionKind::Call(Call { function, arguments, .. }) = &part.kind
@@ -102,19 +112,27 @@ impl Expectation {
         found
     }
 
-    /// Whether it is meant for the values that the job has: it names a table, or compares with numbers alone.
+    /// Whether it may be meant for the values that the job has alone: it names a table, compares with numbers alone, or with one that
+    /// somebody worked out.
     pub fn is_of_values(&self) -> bool {
         let has_name = |part: &Expression| {
             let mut found = false;
             part.each(&mut |inner| found |= matches!(inner.kind, ExpressionKind::Path(_)));
             found
         };
+        let is_worked_out = |part: &Expression| {
+            let mut found = false;
+            part.each(&mut |inner| {
+                found |= matches!(inner.kind, ExpressionKind::Number(value, _) if digits(value) >= WORKED_OUT);
+            });
+            found
+        };
         let is_of_numbers = match &self.what {
-            Expected::Near { surface: None, value, target, .. } => {
-                !matches!(value.kind, ExpressionKind::Path(_)) && !has_name(target)
-                    || matches!(target.kind, ExpressionKind::Number(..) | ExpressionKind::Unary(..))
+            Expected::Near { value, target, .. } => !has_name(target) || is_worked_out(value) || is_worked_out(target),
+            Expected::InRange { range: Range { low, high, .. }, .. } => {
+                [low, high].into_iter().all(|end| !has_name(end))
+                    || [low, high].into_iter().any(is_worked_out)
             }
-            Expected::InRange { surface: None, range, .. } => !has_name(&range.low) && !has_name(&range.high),
             Expected::Status { at, .. } => at.as_ref().is_some_and(|at| !has_name(at)),
             _ => false,
         };

@@ -58,7 +58,7 @@ impl<'j, 'g> Aim<'j, 'g> {
             let off = (0..3).map(|k| (position[k] - nominal.position[k]) * nominal.normal[k]).sum();
             Some(Aimed { position, near: NearFoot { unknowns: nominal.unknowns.clone(), distance: off } })
         };
-        let motion = of.alignment().mean(&gauged.positions, &gauged.nominal).unwrap_or(0.0);
+        let motion = of.alignment().median(&gauged.positions, &gauged.nominal).unwrap_or(0.0);
         let (all, name) = (gauged.nominal.len(), &of.surface.name);
         let unsolved = gauged.nominal.iter().filter(|point| point.outcome != Outcome::Solved).count();
         let left_out = gauged.positions.iter().filter(|position| position.is_none()).count() - unsolved.min(all);
@@ -147,8 +147,8 @@ impl<'j, 'g> Aim<'j, 'g> {
         let measured: Vec<&Gauged> = aims.iter().filter_map(|aim| aim.measured.as_ref()).collect();
         let positions: Vec<Option<[f64; 3]>> = measured.iter().flat_map(|of| of.positions.iter().copied()).collect();
         let nominal: Vec<SurfacePoint> = measured.iter().flat_map(|of| of.nominal.iter().cloned()).collect();
-        let mean = aims.first().and_then(|aim| aim.of.alignment().mean(&positions, &nominal));
-        mean.unwrap_or(aims.first().map_or(0.0, |aim| aim.motion))
+        let median = aims.first().and_then(|aim| aim.of.alignment().median(&positions, &nominal));
+        median.unwrap_or(aims.first().map_or(0.0, |aim| aim.motion))
     }
 
     /// What measured points look as if, where they lie beside their places.

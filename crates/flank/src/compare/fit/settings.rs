@@ -14,7 +14,7 @@ const USUAL_CHANGES: f64 = 10.0;
 const SHARE: f64 = 0.01;
 /// ... of what moves the flank by less than this with usual changes, mm.
 const HARDLY: f64 = 1e-4;
-/// What a change by a scale from the range moves the flank by at the most, mm.
+/// What a change by the scale of a number that is almost zero moves the flank by, mm.
 const SHOWS: f64 = 1e-2;
 
 /// The settings that are named, or all that the job gives a value; in the order of the job.
@@ -94,13 +94,15 @@ pub(in crate::compare) fn steps(
 }
 
 /// A setting as an unknown, within the range that it is said to have. `moved` is what one mm, radian or 1 of it moves the flank by, mm.
-/// What hardly moves the flank, as the radius of a blade that is almost straight, has a share of its value as scale, or of its range.
+/// What hardly moves the flank, as the radius of a blade that is almost straight, has a share of its value as scale; a number, as the curvature
+/// of that blade, what shows, if its range is wide enough for that.
 pub(in crate::compare) fn unknown(of: &Parameter<'_>, moved: f64) -> ScaledUnknown {
     let (low, high) = of.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let (usual, share) = (USUAL_CHANGES * usual_change(of), SHARE * of.value.abs());
-    // of what is neither a length nor an angle, such as a curvature that is almost zero, the range says more than the value
+    // of what is neither a length nor an angle, such as a curvature that is almost zero, the range says more than the value, and what it does to
+    // the flank says most
     let is_number = of.dimension != Dimension::LENGTH && !units::is_angle(of.dimension);
-    let of_range = if is_number && (high - low).is_finite() { (SHARE * (high - low)).min(SHOWS / moved) } else { 0.0 };
+    let of_range = if is_number && moved > 0.0 { (SHARE * (high - low)).min(SHOWS / moved) } else { 0.0 };
     let scale = if usual * moved < HARDLY { usual.max(share).max(of_range) } else { usual };
     ScaledUnknown { start: of.value, scale, range: Range { low, high } }
 }

@@ -18,12 +18,13 @@ use self::result::{CheckedContact, SynthesisResult, SynthesizedSetting};
 use crate::compare::fit::corrected;
 use crate::compare::fit::result::RangeBound;
 use crate::contact::pair::Members;
-use crate::contact::result::{ContactResult, TransmissionError};
+use crate::contact::result::{Backlash, ContactResult, TransmissionError};
 use crate::contact::rolling::Rolling;
-use crate::contact::{Rolled, rolled};
+use crate::contact::{Rolled, backlash, rolled};
 use crate::project::answer::Timing;
 use crate::project::failure::Failure;
 use crate::project::monitor::Monitor;
+use crate::project::remark::NotDoneKind;
 use crate::project::requests::{ContactRequest, JobSelection, SynthesisRequest};
 use crate::project::session::Session;
 use crate::project::shown_path;
@@ -82,6 +83,11 @@ pub fn synthesis(request: &SynthesisRequest, monitor: &dyn Monitor) -> Result<Sy
         timing: Timing { points: 1, elapsed: start.elapsed(), ..Timing::default() },
     };
     verdict::judge(&mut result, (&members, &conditions), (&problem, &found), checked.as_ref());
+    result.remarks.extend(problem.of_both(job, &members));
+    if let Some(checked) = &checked {
+        let now = backlash_now(job, &mut members, request, session)?;
+        result.remarks.extend(verdict::other_backlash(want, (now.as_ref(), checked.result.backlash.as_ref())));
+    }
     if let Some(file) = request.write.as_ref().filter(|_| !values.is_empty()) {
         let text = corrected::text(&request.jobs, (job, &values), file, &origin)?;
         match (request.dry, result.not_done.first_mut()) {
@@ -157,6 +163,23 @@ fn find<'j, 'g>(jobs: &'j [Job<'g>], name: &str) -> Result<(&'j Job<'g>, &'j Wan
     }
 }
 
+/// The backlash of the pair as it is, where opposite flanks tell it.
+///
+/// # Errors
+/// If the work is cancelled.
+fn backlash_now<'j, 'g>(
+    job: &'j Job<'g>,
+    members: &mut Members<'j, 'g>,
+    request: &SynthesisRequest,
+    session: Session<'_>,
+) -> Result<Option<Backlash>, Failure> {
+    let (errors, whole) = (vec![0.0; members.contact.errors.len()], ContactRequest::new(request.jobs.clone()));
+    let Ok(rolling) = Rolling::of_members(job, members, &errors, whole.positions as usize) else { return Ok(None) };
+    let rolling = rolling.closely(members);
+    let (found, _) = backlash::of(job, members, &whole, &errors, &rolling, session)?;
+    Ok(found.map(|(backlash, _)| backlash))
+}
+
 /// The vertex of the contact as it is.
 ///
 /// # Errors
@@ -211,7 +234,15 @@ impl Checked {
         let job = jobs.iter().find(|of| of.name == job.name);
         let found = job.and_then(|job| Some((job, job.contacts.iter().find(|of| of.name == contact.name)?)));
         let (job, contact) = found.expect("other values make no other job");
-        let Rolled { result, found, .. } = rolled(job, contact, &ContactRequest::new(selection), session)?;
+        let whole = ContactRequest::new(selection);
+        let Rolled { mut result, members, found } = rolled(job, contact, &whole, session)?;
+        if let Some((rolling, _)) = &found {
+            let none = vec![0.0; contact.errors.len()];
+            let (room, missed) = backlash::of(job, &members, &whole, &none, rolling, session)?;
+            result.backlash = room.map(|(backlash, _)| backlash);
+            // that opposite flanks are not found all the way says nothing of these
+            result.not_done.extend(missed.into_iter().filter(|of| of.kind == NotDoneKind::Penetration));
+        }
         let vertex = found.and_then(|(rolling, _)| rolling.vertex);
         Ok(Checked { result, vertex })
     }

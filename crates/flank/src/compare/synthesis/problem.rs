@@ -106,6 +106,21 @@ impl<'p, 'g> Problem<'p, 'g> {
         self.idle.iter().map(remark).collect()
     }
 
+    /// Settings that do not change the first flank alone: what they do to the mate is counted, and the mate as it is now does not go with it.
+    pub(super) fn of_both(&self, job: &'p Job<'g>, members: &Members<'_, 'g>) -> Vec<Remark> {
+        let of_first = members.of_first(job, &self.settings);
+        let others = self.settings.iter().filter(|of| of_first.iter().all(|first| first.name != of.name));
+        let [first, second] = members.surfaces.map(|surface| &surface.name);
+        let remark = |of: &&Parameter<'g>| {
+            let message = format!(
+                "`{}` changes not only {first} but also {second} or how both are mounted: the mate has to be made anew with it, too",
+                of.name
+            );
+            Remark::new(RemarkKind::MovesMate, &of.name, message)
+        };
+        others.map(remark).collect()
+    }
+
     pub(super) fn is_rounded(&self, k: usize) -> bool {
         self.steps[k].is_some()
     }

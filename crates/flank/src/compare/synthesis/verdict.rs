@@ -2,13 +2,16 @@
 
 use std::path::Path;
 
+use flank_chain_dsl::WantedContact;
+use flank_export::fixed;
 use flank_solver::{ContactPoint, ContactState, Outcome, SearchEnd, SynthesizedContact, opposed};
 
 use super::conditions::{beyond, off_the_tooth};
 use super::result::SynthesisResult;
 use super::{Checked, Condition, Problem};
 use crate::contact::pair::Members;
-use crate::project::remark::{NotDone, NotDoneKind};
+use crate::contact::result::Backlash;
+use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::shown_path;
 
 /// A combination of conditions that settings change by less than this share of what they change others by, they do not change.
@@ -58,6 +61,27 @@ pub(super) fn judge(
         result.not_done.push(NotDone::new(NotDoneKind::NotMet, &name, message));
     }
 }
+
+/// The backlash with the settings that were found, where that is another one: nobody asked for it.
+pub(super) fn other_backlash(want: &WantedContact, ends: (Option<&Backlash>, Option<&Backlash>)) -> Option<Remark> {
+    let other = match ends {
+        (None, None) => return None,
+        (Some(now), Some(new)) if (now.normal - new.normal).abs() < SAME_BACKLASH => return None,
+        (Some(of), _) | (None, Some(of)) => &of.other,
+    };
+    let [now, new] = [ends.0, ends.1].map(|of| match of {
+        Some(of) => format!("{} mm along the normal", fixed(of.normal, 4)),
+        None => "not known".to_string(),
+    });
+    let message = format!(
+        "the backlash to {other}, which {} does not ask for, is {new} with these settings; as the pair is, {now}",
+        want.name
+    );
+    Some(Remark::new(RemarkKind::OtherBacklash, &want.name, message))
+}
+
+/// A change of backlash by less, mm, is none.
+const SAME_BACKLASH: f64 = 1e-4;
 
 /// Whether a vertex is one of the pair at which all conditions hold.
 pub(super) fn is_met(members: &Members<'_, '_>, conditions: &[Condition], at: &ContactPoint) -> bool {

@@ -9,15 +9,17 @@ use nalgebra::Vector3;
 use crate::project::Project;
 use crate::project::failure::Failure;
 use crate::project::{shown_path, units};
-use crate::solve::patch;
+use crate::solve::{cut, patch};
 use crate::testing::explain::{Moved, explained};
 use crate::testing::judge::{precise, significant};
 use crate::testing::points::{Tested, place};
 use crate::testing::snapshot::angles::turned;
-use crate::testing::snapshot::text::KeptSurface;
+use crate::testing::snapshot::text::{Kept, KeptSurface};
 
 /// Nine digits of some hundred millimetres end here, mm.
 const DIGITS: f64 = 2e-6;
+/// Those of what edges leave, mm.
+const LEFT_DIGITS: f64 = 2e-9;
 /// The status of points that are found.
 const SOLVED: &str = "solved";
 /// Names of settings that are told.
@@ -151,6 +153,7 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         } else if let Some(slid) = self.slid(sample) {
             lines.push(format!("{name} is the same surface, along which {slid}"));
         }
+        lines.extend(self.other_left(&name, new, (sample, points)));
         lines.extend(self.other_statuses(&name, new));
         lines.extend(self.other_branch(&name, points));
         lines.extend(self.other_sample(&name, new));
@@ -166,21 +169,69 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
         lines
     }
 
+    /// What the edges leave that cut it, beside what they left.
+    fn other_left(
+        &self,
+        name: &str,
+        new: &KeptSurface,
+        (sample, points): (&Sample<'_>, &[SurfacePoint]),
+    ) -> Vec<String> {
+        let by = match (&self.old.cut_by, &new.cut_by) {
+            (None, None) => return Vec::new(),
+            (None, Some(by)) => return vec![format!("{name}: the snapshot does not say what {by} leaves over it")],
+            (Some(by), None) => return vec![format!("{name}: it is not cut by {by} any more")],
+            (Some(_), Some(by)) => by,
+        };
+        let Tested { job, session, .. } = *self.tested;
+        let Some(now) = cut::heights(job, self.tested.surface(self.index), points, session) else { return Vec::new() };
+        let both =
+            || self.old.points.iter().zip(&now).enumerate().filter(|(k, _)| points[*k].outcome == Outcome::Solved);
+        let changes = both().filter_map(|(k, (old, now))| {
+            let change = (*now)? - old.left;
+            (change.abs() > LEFT_DIGITS).then_some((k, old.left, change))
+        });
+        let mut lines = Vec::new();
+        if let Some((k, was, change)) = changes.reduce(|a, b| if b.2.abs() > a.2.abs() { b } else { a }) {
+            let length = |value| precise(flank_chain_dsl::Dimension::LENGTH, value);
+            lines.push(format!(
+                "{name}: the edges of {by} leave {} over it instead of {}, most changed at {}",
+                length(was + change),
+                length(was),
+                place(sample, k)
+            ));
+        }
+        let differs =
+            |(_, (old, now)): &(usize, (&Kept, &Option<f64>))| old.is_solved() && old.left.is_nan() == now.is_some();
+        let known = both().filter(differs).count();
+        if known > 0 {
+            let count = units::counted(known, "point");
+            lines.push(format!("{name}: at {count} what {by} leaves is known now and was not, or the other way round"));
+        }
+        lines
+    }
+
     /// What became of points that were solved, and what those were that are solved now.
     fn other_statuses(&self, name: &str, new: &KeptSurface) -> Vec<String> {
         let Some((sample, points)) = &self.now else { return Vec::new() };
         // what is cut away in the end is known of the places of the sample alone
         let is_sampled = self.old.is_at_places_of(new);
         let now = |k: usize| if is_sampled { new.points[k].status.as_str() } else { points[k].outcome.word() };
+        let was = |k: usize| self.old.points[k].status.as_str();
         let mut lines = Vec::new();
-        for (is_lost, what) in [(true, "no longer solved, but"), (false, "solved that were")] {
+        for (before, after, what) in
+            [(true, false, "no longer solved, but"), (false, true, "solved that were"), (false, false, "now")]
+        {
             let differs = |k: &usize| {
-                let was = self.old.points[*k].is_solved();
-                was == is_lost && (now(*k) == SOLVED) != was
+                let is_so = self.old.points[*k].is_solved() == before && (now(*k) == SOLVED) == after;
+                is_so && now(*k) != was(*k)
             };
             let changed: Vec<usize> = (0..points.len()).filter(differs).collect();
             let Some(first) = changed.first() else { continue };
-            let other = |k: &usize| if is_lost { now(*k) } else { self.old.points[*k].status.as_str() };
+            let other = |k: &usize| match (before, after) {
+                (true, _) => now(*k).to_string(),
+                (false, true) => was(*k).to_string(),
+                (false, false) => format!("{} instead of {}", now(*k), was(*k)),
+            };
             let mut kinds: Vec<String> = changed.iter().map(|k| other(k).replace('_', " ")).collect();
             kinds.sort();
             kinds.dedup();
@@ -192,7 +243,7 @@ impl<'t, 'j, 'g> Beside<'t, 'j, 'g> {
             ));
         }
         let old = self.old;
-        if !lines.is_empty() && old.asked == new.asked && old.solved != new.solved {
+        if old.asked == new.asked && old.solved != new.solved {
             lines.push(format!(
                 "{name}: of {} that were looked at, {} are solved instead of {}",
                 old.asked, new.solved, old.solved

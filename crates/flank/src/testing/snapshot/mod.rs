@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use crate::project::failure::Failure;
 use crate::project::files::write_texts;
 use crate::project::shown_path;
+use crate::solve::cut;
 use crate::testing::points::Tested;
 use crate::testing::request::TestRequest;
 use crate::testing::result::{TestedSnapshot, TestedSpec};
@@ -91,6 +92,7 @@ fn kept(tested: &Tested<'_, '_>) -> Vec<KeptSurface> {
     let of_surface = |(index, surface): (usize, &flank_chain_dsl::GeneratedSurface<'_>)| {
         let sample = surface.sample.as_ref()?;
         let points = tested.points(index);
+        let left = cut::heights(tested.job, surface, points, tested.session);
         let [rows, columns] = sample.counts.map(lines);
         let places = rows.iter().flat_map(|row| columns.iter().map(move |column| (*row, *column)));
         let points = places.map(|(row, column)| {
@@ -101,6 +103,7 @@ fn kept(tested: &Tested<'_, '_>) -> Vec<KeptSurface> {
                 position: point.position,
                 normal: point.normal,
                 unknowns: point.unknowns.clone(),
+                left: left.as_ref().and_then(|left| left[row * sample.counts[1] + column]).unwrap_or(f64::NAN),
             }
         });
         Some(KeptSurface {
@@ -112,6 +115,7 @@ fn kept(tested: &Tested<'_, '_>) -> Vec<KeptSurface> {
             counts: [rows.len(), columns.len()],
             solved: tested.points(index).iter().filter(|point| point.outcome.word() == "solved").count(),
             asked: tested.points(index).len(),
+            cut_by: surface.cut_by.map(|by| tested.surface(by).name.clone()),
             work: tested.work(index),
             points: points.collect(),
         })

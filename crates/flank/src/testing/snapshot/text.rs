@@ -21,6 +21,8 @@ pub(super) struct KeptSurface {
     /// Of the points that were looked at.
     pub(super) solved: usize,
     pub(super) asked: usize,
+    /// The surface of the single edges that cut it, if any do.
+    pub(super) cut_by: Option<String>,
     /// Evaluations of the equations, and boxes of the search for the branch.
     pub(super) work: [u64; 2],
     pub(super) points: Vec<Kept>,
@@ -34,6 +36,8 @@ pub(super) struct Kept {
     pub(super) position: [f64; 3],
     pub(super) normal: [f64; 3],
     pub(super) unknowns: Vec<f64>,
+    /// What the edges that cut the surface leave over it; no number where that is not known.
+    pub(super) left: f64,
 }
 
 impl KeptSurface {
@@ -79,6 +83,11 @@ impl NoSnapshot {
     }
 }
 
+/// What edges leave, mm: in a thousandth of a nanometre, as it is the small difference of places that have not more digits.
+fn height(value: f64) -> String {
+    number((1e9 * value).round() / 1e9)
+}
+
 /// A number with nine significant digits; what is no number as a dash.
 fn number(value: f64) -> String {
     if !value.is_finite() {
@@ -104,12 +113,20 @@ pub(super) fn written(spec: &str, surfaces: &[KeptSurface]) -> String {
         body += &format!("surface {} in {} {rows} x {columns}\n", surface.name, surface.frame);
         body += &format!("solved {} of {}\n", surface.solved, surface.asked);
         body += &format!("work {evaluations} evaluations {boxes} boxes\n");
-        body += &format!("{} status x y z nx ny nz {}\n", surface.coordinates.join(" "), surface.unknowns.join(" "));
+        if let Some(edges) = &surface.cut_by {
+            body += &format!("cut by {edges}\n");
+        }
+        let (coordinates, unknowns) = (surface.coordinates.join(" "), surface.unknowns.join(" "));
+        let left = if surface.cut_by.is_some() { " left" } else { "" };
+        body += &format!("{coordinates} status x y z nx ny nz {unknowns}{left}\n");
         for point in &surface.points {
             body += &format!("{} {}", numbers(&point.at), point.status);
             if point.is_solved() {
                 let (position, normal) = (numbers(&point.position), numbers(&point.normal));
                 body += &format!(" {position} {normal} {}", numbers(&point.unknowns));
+                if surface.cut_by.is_some() {
+                    body += &format!(" {}", height(point.left));
+                }
             }
             body.push('\n');
         }
@@ -152,18 +169,22 @@ fn parsed(body: &str) -> Option<Vec<KeptSurface>> {
         let (solved, asked) = lines.next()?.strip_prefix("solved ")?.split_once(" of ")?;
         let work: Vec<&str> = lines.next()?.split(' ').collect();
         let ["work", evaluations, "evaluations", boxes, "boxes"] = work[..] else { return None };
+        let cut_by = lines.next_if(|line| line.starts_with("cut by ")).map(|line| line["cut by ".len()..].to_string());
         let head: Vec<String> = lines.next()?.split_whitespace().map(str::to_string).collect();
         let [first, second, ..] = &head[..] else { return None };
-        let points: Option<Vec<Kept>> = lines.by_ref().take(counts[0] * counts[1]).map(point).collect();
+        let unknowns = head.get(9..head.len() - usize::from(cut_by.is_some()))?.to_vec();
+        let points = lines.by_ref().take(counts[0] * counts[1]);
+        let points: Option<Vec<Kept>> = points.map(|line| point(line, unknowns.len())).collect();
         surfaces.push(KeptSurface {
             job: job.clone(),
             name: name.to_string(),
             frame: frame.to_string(),
             coordinates: [first.clone(), second.clone()],
-            unknowns: head.get(9..)?.to_vec(),
+            unknowns,
             counts,
             solved: solved.parse().ok()?,
             asked: asked.parse().ok()?,
+            cut_by,
             work: [evaluations.parse().ok()?, boxes.parse().ok()?],
             points: points?,
         });
@@ -171,7 +192,8 @@ fn parsed(body: &str) -> Option<Vec<KeptSurface>> {
     Some(surfaces)
 }
 
-fn point(line: &str) -> Option<Kept> {
+/// A point with so many unknowns.
+fn point(line: &str, count: usize) -> Option<Kept> {
     let words: Vec<&str> = line.split(' ').collect();
     let [first, second, status, rest @ ..] = &words[..] else { return None };
     let value = |word: &&str| if *word == "-" { Some(f64::NAN) } else { word.parse::<f64>().ok() };
@@ -183,7 +205,8 @@ fn point(line: &str) -> Option<Kept> {
         status: (*status).to_string(),
         position: vector(0),
         normal: vector(3),
-        unknowns: numbers.get(6..).unwrap_or_default().to_vec(),
+        unknowns: numbers.iter().skip(6).take(count).copied().collect(),
+        left: numbers.get(6 + count).copied().unwrap_or(f64::NAN),
     })
 }
 
@@ -198,6 +221,7 @@ mod tests {
             position: [1.0, 2.0, 3.0],
             normal: [0.0, 0.6, 0.8],
             unknowns: vec![0.5, -0.25],
+            left: 1.25e-3,
         };
         KeptSurface {
             job: "gear".to_string(),
@@ -208,6 +232,7 @@ mod tests {
             counts: [1, 2],
             solved: 1,
             asked: 2,
+            cut_by: Some("cuts".to_string()),
             work: [12, 3],
             points: vec![point("solved"), point("undercut")],
         }
@@ -219,7 +244,7 @@ mod tests {
         let read = read(&written).expect("a snapshot");
         assert_eq!(read[0].points[0], surface().points[0]);
         assert_eq!((read[0].points[1].status.as_str(), read[0].work, read[0].asked), ("undercut", [12, 3], 2));
-        assert_eq!(read[0].unknowns, ["u", "roll"]);
+        assert_eq!((&read[0].unknowns[..], read[0].cut_by.as_deref()), (&surface().unknowns[..], Some("cuts")));
     }
 
     #[test]
