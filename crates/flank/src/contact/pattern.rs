@@ -1,6 +1,8 @@
 //! What the marking compound shows on the flanks of a pair.
 
-use flank_solver::{Gap, GapProblem, Outcome, RollingPair};
+use std::f64::consts::TAU;
+
+use flank_solver::{ContactPoint, Gap, GapProblem, Outcome, RollingPair};
 
 use crate::contact::pair::Members;
 use crate::contact::result::ContactPattern;
@@ -13,6 +15,8 @@ const FILMS: f64 = 10.0;
 /// A mate is looked for no farther away than this, mm, and than this share of the way from one tooth to the next.
 const FARTHEST: f64 = 5.0;
 const SHARE: f64 = 0.4;
+/// Teeth that are nearer to each other than this, mm, are none: what goes on along the normal by so little stands still.
+const NO_WAY: f64 = 1e-3;
 
 /// How near the mate comes to the points of a flank's sample.
 pub(crate) struct GapMap {
@@ -33,7 +37,12 @@ pub(crate) fn on_both(
     let positions = positions(rolling, compound);
     let of_member = |member: usize| {
         let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
-        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member], reach_of(rolling));
+        let gaps = problem.least(
+            &members.points[member],
+            &positions,
+            &members.points[1 - member],
+            reach_of(rolling, members.teeth()),
+        );
         let pattern = pattern(members, member, &gaps, compound);
         GapMap { gaps, positions: positions.clone(), pattern }
     };
@@ -63,10 +72,21 @@ pub(crate) fn reach_of_film(compound: f64) -> f64 {
 }
 
 /// How far away a mate is looked for, mm: a part of the way from one tooth to the next along the normal, where the pitch is known.
-pub(crate) fn reach_of(rolling: &Rolling) -> f64 {
+pub(crate) fn reach_of(rolling: &Rolling, teeth: [Option<u32>; 2]) -> f64 {
     let middle = rolling.middle().filter(|_| rolling.has_pitch);
-    let way = middle.map(|middle| (middle.advance * rolling.engagement.pitch).abs()).filter(|way| *way > 0.0);
+    let way = middle.and_then(|middle| way_to_next(middle, rolling.engagement.pitch, teeth));
     way.map_or(FARTHEST, |way| FARTHEST.min(SHARE * way))
+}
+
+/// From a tooth to the next along the normal of a contact, mm: as the members go on with the roll, or by the teeth of one that turns. Where one
+/// stands and the other goes around in it, as the disc of a cycloidal drive does, neither goes on along the normal. `None` where nothing tells.
+fn way_to_next(at: &ContactPoint, pitch: f64, teeth: [Option<u32>; 2]) -> Option<f64> {
+    let by_teeth = (0..2).filter_map(|k| {
+        let ([x, y, _], [nx, ny, _]) = (at.in_members[k], at.normals[k]);
+        Some((x * ny - y * nx).abs() * TAU / f64::from(teeth[k]?))
+    });
+    let ways = by_teeth.chain([(at.advance * pitch).abs()]);
+    ways.reduce(f64::max).filter(|way| *way > NO_WAY)
 }
 
 fn pattern(members: &Members<'_, '_>, member: usize, gaps: &[Option<Gap>], compound: f64) -> ContactPattern {
