@@ -1,6 +1,7 @@
 //! `flank contact`
 
 pub(crate) mod backlash;
+mod composite;
 pub(crate) mod drawn;
 pub(crate) mod family;
 pub(crate) mod files;

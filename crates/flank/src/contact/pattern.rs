@@ -4,6 +4,7 @@ use std::f64::consts::TAU;
 
 use flank_solver::{ContactPoint, Gap, GapProblem, Outcome, RollingPair};
 
+use crate::contact::composite::CompositeLag;
 use crate::contact::pair::Members;
 use crate::contact::result::ContactPattern;
 use crate::contact::rolling::Rolling;
@@ -22,31 +23,55 @@ const NO_WAY: f64 = 1e-3;
 pub(crate) struct GapMap {
     /// In the order of the sample.
     pub(crate) gaps: Vec<Option<Gap>>,
-    /// Roll positions and lags that the numbers in it count.
-    pub(crate) positions: Vec<[f64; 2]>,
     pub(crate) pattern: ContactPattern,
 }
 
-/// On both flanks, over all positions at which one pair of teeth is near.
+/// On both flanks, over all of the roll at which one pair of teeth is near.
 pub(crate) fn on_both(
     members: &Members<'_, '_>,
     pair: &RollingPair<'_, '_>,
     rolling: &Rolling,
     compound: f64,
 ) -> Vec<GapMap> {
-    let positions = positions(rolling, compound);
+    let (positions, reach) = (with_transfers(rolling, compound), reach_of(rolling, members.teeth()));
+    let rolls: Vec<f64> = positions.iter().map(|position| position[0]).collect();
+    let composite = CompositeLag::new(rolling, &rolls);
+    let lag = |roll: f64| composite.at(roll);
     let of_member = |member: usize| {
         let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
-        let gaps = problem.least(
-            &members.points[member],
-            &positions,
-            &members.points[1 - member],
-            reach_of(rolling, members.teeth()),
-        );
+        let mate = &members.points[1 - member];
+        let gaps = problem.least_over(&members.points[member], (&positions, &lag), mate, reach);
         let pattern = pattern(members, member, &gaps, compound);
-        GapMap { gaps, positions: positions.clone(), pattern }
+        GapMap { gaps, pattern }
     };
     vec![of_member(0), of_member(1)]
+}
+
+/// The contact of the pair of teeth itself at a roll position.
+fn own(rolling: &Rolling, roll: f64) -> Option<ContactPoint> {
+    rolling.problem.pair_at(rolling.looked_at(), 0, roll)
+}
+
+/// The same as [`positions`], and where one pair of teeth hands over to the next, in the order of the roll: the composite lag has kinks there.
+fn with_transfers(rolling: &Rolling, compound: f64) -> Vec<[f64; 2]> {
+    let mut positions = positions(rolling, compound);
+    let Some([low, high]) = positions.first().zip(positions.last()).map(|(first, last)| [first[0], last[0]]) else {
+        return positions;
+    };
+    let pitch = rolling.engagement.pitch;
+    let of_transfer = |roll: f64| {
+        let pitches = |end: f64| (end - roll) / pitch;
+        let all = pitches(low).ceil() as i64..=pitches(high).floor() as i64;
+        all.map(move |by| roll + by as f64 * pitch)
+    };
+    let near = |roll: f64| {
+        let (lag, point) = (rolling.lag_at(roll)?, own(rolling, roll)?);
+        (((lag - point.lag) * point.opening).abs() <= reach_of_film(compound)).then_some([roll, lag])
+    };
+    let more: Vec<[f64; 2]> = rolling.transfers().into_iter().flat_map(of_transfer).filter_map(near).collect();
+    positions.extend(more);
+    positions.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    positions
 }
 
 /// Roll positions and lags at which one pair of teeth is near.
