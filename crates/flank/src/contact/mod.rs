@@ -3,12 +3,15 @@
 pub(crate) mod backlash;
 mod composite;
 pub(crate) mod drawn;
+mod edge_places;
 pub(crate) mod family;
 pub(crate) mod files;
+mod fouling;
 mod gap;
 pub(crate) mod influence;
 pub(crate) mod interference;
 mod law;
+mod least_room;
 pub(crate) mod milled;
 pub(crate) mod pair;
 pub(crate) mod patches;
