@@ -222,6 +222,7 @@ fn what_cannot_touch_is_told() {
     let told = |run: &std::process::Output| (run.status.code(), text(&run.stderr));
     let (code, message) = told(&run(&PADDLES.replace("LAG", "-9 deg .. -1 deg")));
     assert!(code == Some(3) && message.contains("do not reach each other within the range of `lag`"), "{message}");
+    assert!(message.contains("the tooth of the spec alone is tried") && !message.contains("ones beside"), "{message}");
     let facing = PADDLES
         .replace("LAG", "-4 deg .. 4 deg")
         .replace("180 deg - turn", "0 deg - turn")
@@ -260,6 +261,8 @@ fn what_cannot_touch_is_told() {
     );
     let (code, message) = told(&run(&with_solids.replace("LAG", "1 deg .. 9 deg")));
     assert!(code == Some(0) && !message.contains("no `solid`"), "{message}");
+    let (code, message) = told(&run(&with_solids.replace("LAG", "-9 deg .. -1 deg")));
+    assert!(code == Some(3) && message.contains("and the ones beside it are tried"), "{message}");
     // a blank that ends below the flanks
     let shallow = with_solids.replace("LAG", "1 deg .. 9 deg").replace("23 mm", "15 mm");
     let (code, message) = told(&run(&shallow));

@@ -560,3 +560,46 @@ job pinion {{
     let cut = line.iter().filter(|row| row.reason.contains("in another position")).count();
     assert!(cut >= 10, "{cut} of {}", line.len());
 }
+
+/// A disc turns through a fin of its tool: how deep its points come into that is told as far as they are in it, and not to where they have come behind it.
+#[test]
+fn the_depth_in_a_fin_is_no_more_than_its_thickness() {
+    let spec = "machine lathe {
+    axis C : rotary
+    frame bed
+    frame slide in bed = translate_x(0 mm)
+    frame work in bed = rotate_z(C)
+}
+tool finned {
+    param thickness : length = 0.25 mm
+    surface pin(u: angle in 90 deg .. 270 deg, v: length in -10 mm .. 10 mm) {
+        at = [40 mm + 8 mm * cos(u), 8 mm * sin(u), v]
+        body towards [-cos(u), -sin(u), 0]
+    }
+    surface front, behind(p: length in -100 mm .. 100 mm, w: length in -12 mm .. 12 mm) for side in [1, -1] {
+        at = [p, 20 mm + (1 - side) / 2 * thickness, w]
+        body towards [0, side, 0]
+    }
+}
+job disc {
+    machine m = lathe
+    tool t = finned
+    mount t on m.slide
+    motion turn : angle in -20 deg .. 120 deg
+    drive m.C = -turn
+    surface side, front, behind in m.work = envelope(t.pin, t.front, t.behind, over: turn)
+    sample side { turn: 0 deg .. 20 deg by 9, v: -5 mm .. 5 mm by 3 }
+}
+";
+    let at = folder("secondary_fin");
+    let (spec, out) = (written(&at, "fin.chain", spec), at.to_str().expect("a plain path"));
+    // where the range of the motion ends, points are half a millimetre behind the front, on a circle of 32 mm
+    let within = 32.0 * 40f64.to_radians().sin() - 20.0;
+    for thickness in [0.25, 0.01, 3.0] {
+        let set = format!("t.thickness={thickness}mm");
+        let run = flank(&["solve", &spec, "--no-picture", "--out", out, "--set", &set]);
+        assert_eq!(run.status.code(), Some(3), "{}", text(&run.stderr));
+        let told = format!("by up to {:.6} mm", within.min(thickness));
+        assert!(text(&run.stderr).contains(&told), "{told}: {}", text(&run.stderr));
+    }
+}

@@ -25,9 +25,10 @@ pub(crate) struct ContactFamily {
     first: ContactPoint,
     is_vertex: bool,
     state: Option<ContactState>,
-    /// Positions of a pitch, how far it is, if that is known, and the ends of the roll.
+    /// Positions of a pitch, how far it is, if that is known, the teeth of both as far as solids have them, and the ends of the roll.
     steps: usize,
     every: Option<f64>,
+    teeth: [Option<u32>; 2],
     limits: [f64; 2],
     film: f64,
     lag: Dimension,
@@ -100,6 +101,7 @@ impl ContactFamily {
             first: rolling.first.clone(),
             steps: request.positions as usize,
             every: members.pitch(job),
+            teeth: members.teeth(),
             limits: [contact.roll.low, contact.roll.high],
             film: request.compound,
             lag: contact.lag.dimension,
@@ -131,7 +133,7 @@ impl ContactFamily {
 
     /// Whether the mate comes nearer than not at all to some of the points that are spread over a flank.
     fn reaches_in(&self, values: &[f64], rolling: &Rolling) -> bool {
-        let (positions, reach) = (pattern::positions(rolling, self.film), pattern::reach_of(rolling));
+        let (positions, reach) = (pattern::positions(rolling, self.film), pattern::reach_of(rolling, self.teeth));
         [0, 1].into_iter().any(|member| {
             let nodes = self.nodes[member].at(&values[self.axes..]);
             let gaps = self.gaps[member].with_values(values);

@@ -3,9 +3,12 @@
 //! A place of an edge touches such a surface at a lag of its own. As long as that opens the pair less than the lag with which it rolls, there
 //! is room.
 
-use flank_chain_dsl::{GeneratedSurface, Job};
-use flank_solver::{ContactProblem, Outcome, OutlineSegment, SurfacePoint};
+use flank_chain_dsl::Job;
+use flank_solver::{ContactProblem, SurfacePoint};
 
+use crate::contact::edge_places::edges;
+use crate::contact::fouling;
+use crate::contact::least_room::least_between;
 use crate::contact::pair::Members;
 use crate::contact::result::Clearance;
 use crate::contact::rolling::Rolling;
@@ -13,17 +16,9 @@ use crate::project::failure::Failure;
 use crate::project::remark::{NotDone, NotDoneKind, Remark, RemarkKind};
 use crate::project::session::Session;
 use crate::project::units;
-use crate::solve::{self, blank};
 
-/// Places along each edge.
-const PLACES: usize = 9;
-/// An edge is one of a flank whose points come so near to it, as a share of the way across them.
-const BESIDE: f64 = 0.3;
 /// Room below this is no rounding: the tooth cuts into its mate, mm.
 const REACHES_IN: f64 = -1e-7;
-
-/// Golden sections of the way from one roll position to the next but one: to 1e-6 of it, where also a kink is as exact as room is told.
-const SECTIONS: usize = 28;
 
 /// What is known of the room in tooth spaces.
 pub(crate) struct Rooms {
@@ -49,8 +44,11 @@ pub(crate) fn of_spaces(
         session.check()?;
         clearances.extend(clearance(job, members, other, (errors, rolling), session));
     }
-    let name = &members.contact.name;
     let cuts = |room: &&Clearance| room.least_mm < REACHES_IN;
+    // beside the flank of the contact itself there is room that says nothing: just where an edge has left it
+    let fouled = fouling::of_flanks(job, members, (errors, rolling), session)?;
+    clearances.extend(fouled.iter().filter(cuts).cloned());
+    let name = &members.contact.name;
     let not_done = clearances.iter().filter(cuts).map(|room| {
         let Clearance { of, with, .. } = room;
         let least = units::scientific(-room.least_mm, 2);
@@ -109,93 +107,4 @@ fn clearance<'g>(
         least_mm,
         turn: units::shown(members.contact.roll.dimension, roll),
     })
-}
-
-/// The least of a place over the roll, and where: of its rooms at roll positions, and between those that are next to the least ones where it may be
-/// less than what is known.
-fn least_between(
-    rolls: &[f64],
-    rooms: &[Option<f64>],
-    known: Option<(f64, f64)>,
-    at: impl Fn(f64) -> Option<f64>,
-) -> Option<(f64, f64)> {
-    let room = |k: usize| rooms.get(k).copied().flatten();
-    let beside = |k: usize| [k.wrapping_sub(1), k + 1].map(room);
-    let is_least = |k: &usize| room(*k).is_some_and(|own| beside(*k).into_iter().flatten().all(|other| own <= other));
-    let mut least = known;
-    for k in (0..rooms.len()).filter(is_least) {
-        let Some(own) = room(k) else { continue };
-        if least.is_none_or(|(least, _)| own < least) {
-            least = Some((own, rolls[k]));
-        }
-        // between two positions it falls by no more than to the one that is next
-        let fall = beside(k).into_iter().flatten().map(|other| other - own).fold(0.0, f64::max);
-        if least.is_some_and(|(least, _)| own - fall > least) {
-            continue;
-        }
-        let ends = [k.saturating_sub(1), (k + 1).min(rolls.len() - 1)].map(|k| rolls[k]);
-        let found = lowest(ends, |roll| at(roll).unwrap_or(f64::INFINITY));
-        if least.is_none_or(|(least, _)| found.0 < least) {
-            least = Some(found);
-        }
-    }
-    least
-}
-
-/// The least value between two ends and where it is, by golden section.
-fn lowest([mut low, mut high]: [f64; 2], at: impl Fn(f64) -> f64) -> (f64, f64) {
-    let share = 0.5 * (5f64.sqrt() - 1.0);
-    let inner = |low: f64, high: f64| [high - share * (high - low), low + share * (high - low)];
-    let mut places = inner(low, high);
-    let mut values = places.map(&at);
-    for _ in 0..SECTIONS {
-        if values[0] <= values[1] {
-            high = places[1];
-            let next = inner(low, high)[0];
-            (places, values) = ([next, places[0]], [at(next), values[0]]);
-        } else {
-            low = places[0];
-            let next = inner(low, high)[1];
-            (places, values) = ([places[1], next], [values[1], at(next)]);
-        }
-    }
-    if values[0] <= values[1] { (values[0], places[0]) } else { (values[1], places[1]) }
-}
-
-/// Points of a flank along the segments of its outline at which it ends.
-fn edges(job: &Job<'_>, members: &Members<'_, '_>, flank: usize, session: Session) -> Vec<SurfacePoint> {
-    let (surface, Some(solid)) = (members.surfaces[flank], members.solids[flank]) else { return Vec::new() };
-    let solved: Vec<&SurfacePoint> =
-        members.points[flank].iter().filter(|point| point.outcome == Outcome::Solved).collect();
-    let outline = blank::outline(solid);
-    let along = |segment: &OutlineSegment| along(job, surface, segment, (&solved, session));
-    outline.segments().iter().flat_map(along).collect()
-}
-
-fn along<'g>(
-    job: &Job<'g>,
-    surface: &GeneratedSurface<'g>,
-    segment: &OutlineSegment,
-    (solved, session): (&[&SurfacePoint], Session),
-) -> Vec<SurfacePoint> {
-    let section = |point: &SurfacePoint| [point.position[2], point.position[0].hypot(point.position[1])];
-    let off = |point: &SurfacePoint| {
-        let [z, rho] = section(point);
-        let [near_z, near_rho] = segment.nearest([z, rho]);
-        (z - near_z).hypot(rho - near_rho)
-    };
-    let ends = |k: usize| {
-        let values = solved.iter().map(|point| section(point)[k]);
-        values.fold([f64::MAX, f64::MIN], |[low, high], x| [low.min(x), high.max(x)])
-    };
-    let [[z0, z1], [rho0, rho1]] = [ends(0), ends(1)];
-    let Some(near) = solved.iter().min_by(|a, b| off(a).total_cmp(&off(b))) else { return Vec::new() };
-    if off(near) > BESIDE * (z1 - z0).min(rho1 - rho0) {
-        return Vec::new();
-    }
-    let [x, y, z] = surface.surface.position.0;
-    let problem = solve::problem(job, surface, [z, (x * x + y * y).sqrt()], session);
-    let places = segment.places(PLACES);
-    let (points, _) = problem.solve_points(&places, [1, PLACES], Some(&near.unknowns), None);
-    (0..points.len()).map(|k| points.point(k)).filter(|point| point.outcome == Outcome::Solved).collect()
 }

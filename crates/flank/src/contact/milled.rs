@@ -116,7 +116,7 @@ pub(crate) fn rolled<'j, 'g>(
         gaps,
         mate: &members.points[1 - member],
         own: &members.points[member],
-        reach: reach_of(rolling),
+        reach: reach_of(rolling, members.teeth()),
         member,
         surface: &surface.name,
         frame: &surface.frame,

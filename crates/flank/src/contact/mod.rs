@@ -1,13 +1,17 @@
 //! `flank contact`
 
 pub(crate) mod backlash;
+mod composite;
 pub(crate) mod drawn;
+mod edge_places;
 pub(crate) mod family;
 pub(crate) mod files;
+mod fouling;
 mod gap;
 pub(crate) mod influence;
 pub(crate) mod interference;
 mod law;
+mod least_room;
 pub(crate) mod milled;
 pub(crate) mod pair;
 pub(crate) mod patches;
@@ -124,6 +128,7 @@ fn of_contact(
         Vec::new()
     };
     let vhj = if request.vhj { tester::vhj(job, &members, &errors, &rolling) } else { Vec::new() };
+    let unmounted = (request.vhj && vhj.is_empty()).then(|| tester::nothing(&members, &rolling));
     let (backlash, unsound) = backlash::of(job, &members, request, &errors, &rolling, session)?;
     let (jams, unsound): (Vec<NotDone>, Vec<NotDone>) =
         unsound.into_iter().partition(|of| of.kind == NotDoneKind::Penetration);
@@ -174,7 +179,7 @@ fn of_contact(
         grids,
         not_done: origin
             .located(&[job], [&result.not_done[..], &unsound, &rooms.not_done, &open, &unmilled, &jams].concat()),
-        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks, &noted].concat()),
+        remarks: origin.located(&[job], [&result.remarks[..], &rooms.remarks, &noted, unmounted.as_slice()].concat()),
         ..result
     })
 }
@@ -328,7 +333,17 @@ fn refused(members: &Members<'_, '_>, why: NoContact) -> NotDone {
                     lag.name, roll.name
                 ),
                 "where they stay apart, mount them nearer; where the members reach into each other all the way, set them apart".to_string(),
-                "the law has to be right to a pitch: of the second member the tooth of the spec and the ones beside it are tried".to_string(),
+                match members.solids[1] {
+                    Some(_) => {
+                        "the law has to be right to a pitch: of the second member the tooth of the spec and the ones beside it are tried"
+                            .to_string()
+                    }
+                    None => format!(
+                        "the law has to be right to the range of `{}`: no `solid` says how many teeth {second} is one of, so the tooth of the spec \
+                         alone is tried; with one the teeth beside it are, too",
+                        lag.name
+                    ),
+                },
             ],
         ),
         NoContact::NoFlank(member) => {

@@ -73,6 +73,11 @@ impl<'j, 'g> Members<'j, 'g> {
         self.solids[member].map(blank::outline).or_else(|| sampled().flatten())
     }
 
+    /// How many teeth each member has, where its solid says so.
+    pub(crate) fn teeth(&self) -> [Option<u32>; 2] {
+        self.solids.map(|solid| solid.map(|solid| solid.teeth))
+    }
+
     /// The other surfaces of a member's tooth space.
     pub(crate) fn space(&self, job: &Job<'g>, member: usize) -> Vec<usize> {
         let space = self.solids[member].map_or(&[][..], |solid| &solid.space);

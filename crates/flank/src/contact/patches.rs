@@ -33,7 +33,6 @@ pub(crate) fn flank(job: &Job<'_>, members: &Members<'_, '_>, member: usize, map
     };
     let patch = patch(job, &surface.name, surface, [axis(0), axis(1)], &members.points[member]);
     let roll = &members.contact.roll;
-    let turn = |position: usize| units::shown(roll.dimension, map.positions[position][0]);
     let fields = vec![
         field(
             GAP,
@@ -45,7 +44,7 @@ pub(crate) fn flank(job: &Job<'_>, members: &Members<'_, '_>, member: usize, map
             "nearest_at",
             unit_name(roll.dimension),
             "roll position of the least distance",
-            map.gaps.iter().map(|gap| Some(turn((*gap)?.position))),
+            map.gaps.iter().map(|gap| Some(units::shown(roll.dimension, (*gap)?.roll))),
         ),
     ];
     Patch { fields, ..patch }

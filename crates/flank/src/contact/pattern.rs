@@ -1,7 +1,10 @@
 //! What the marking compound shows on the flanks of a pair.
 
-use flank_solver::{Gap, GapProblem, Outcome, RollingPair};
+use std::f64::consts::TAU;
 
+use flank_solver::{ContactPoint, Gap, GapProblem, Outcome, RollingPair};
+
+use crate::contact::composite::CompositeLag;
 use crate::contact::pair::Members;
 use crate::contact::result::ContactPattern;
 use crate::contact::rolling::Rolling;
@@ -13,31 +16,62 @@ const FILMS: f64 = 10.0;
 /// A mate is looked for no farther away than this, mm, and than this share of the way from one tooth to the next.
 const FARTHEST: f64 = 5.0;
 const SHARE: f64 = 0.4;
+/// Teeth that are nearer to each other than this, mm, are none: what goes on along the normal by so little stands still.
+const NO_WAY: f64 = 1e-3;
 
 /// How near the mate comes to the points of a flank's sample.
 pub(crate) struct GapMap {
     /// In the order of the sample.
     pub(crate) gaps: Vec<Option<Gap>>,
-    /// Roll positions and lags that the numbers in it count.
-    pub(crate) positions: Vec<[f64; 2]>,
     pub(crate) pattern: ContactPattern,
 }
 
-/// On both flanks, over all positions at which one pair of teeth is near.
+/// On both flanks, over all of the roll at which one pair of teeth is near.
 pub(crate) fn on_both(
     members: &Members<'_, '_>,
     pair: &RollingPair<'_, '_>,
     rolling: &Rolling,
     compound: f64,
 ) -> Vec<GapMap> {
-    let positions = positions(rolling, compound);
+    let (positions, reach) = (with_transfers(rolling, compound), reach_of(rolling, members.teeth()));
+    let rolls: Vec<f64> = positions.iter().map(|position| position[0]).collect();
+    let composite = CompositeLag::new(rolling, &rolls);
+    let lag = |roll: f64| composite.at(roll);
     let of_member = |member: usize| {
         let problem = GapProblem::new(pair, member).expect("a job without errors leaves nothing unbound");
-        let gaps = problem.least(&members.points[member], &positions, &members.points[1 - member], reach_of(rolling));
+        let mate = &members.points[1 - member];
+        let gaps = problem.least_over(&members.points[member], (&positions, &lag), mate, reach);
         let pattern = pattern(members, member, &gaps, compound);
-        GapMap { gaps, positions: positions.clone(), pattern }
+        GapMap { gaps, pattern }
     };
     vec![of_member(0), of_member(1)]
+}
+
+/// The contact of the pair of teeth itself at a roll position.
+fn own(rolling: &Rolling, roll: f64) -> Option<ContactPoint> {
+    rolling.problem.pair_at(rolling.looked_at(), 0, roll)
+}
+
+/// The same as [`positions`], and where one pair of teeth hands over to the next, in the order of the roll: the composite lag has kinks there.
+fn with_transfers(rolling: &Rolling, compound: f64) -> Vec<[f64; 2]> {
+    let mut positions = positions(rolling, compound);
+    let Some([low, high]) = positions.first().zip(positions.last()).map(|(first, last)| [first[0], last[0]]) else {
+        return positions;
+    };
+    let pitch = rolling.engagement.pitch;
+    let of_transfer = |roll: f64| {
+        let pitches = |end: f64| (end - roll) / pitch;
+        let all = pitches(low).ceil() as i64..=pitches(high).floor() as i64;
+        all.map(move |by| roll + by as f64 * pitch)
+    };
+    let near = |roll: f64| {
+        let (lag, point) = (rolling.lag_at(roll)?, own(rolling, roll)?);
+        (((lag - point.lag) * point.opening).abs() <= reach_of_film(compound)).then_some([roll, lag])
+    };
+    let more: Vec<[f64; 2]> = rolling.transfers().into_iter().flat_map(of_transfer).filter_map(near).collect();
+    positions.extend(more);
+    positions.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    positions
 }
 
 /// Roll positions and lags at which one pair of teeth is near.
@@ -63,10 +97,21 @@ pub(crate) fn reach_of_film(compound: f64) -> f64 {
 }
 
 /// How far away a mate is looked for, mm: a part of the way from one tooth to the next along the normal, where the pitch is known.
-pub(crate) fn reach_of(rolling: &Rolling) -> f64 {
+pub(crate) fn reach_of(rolling: &Rolling, teeth: [Option<u32>; 2]) -> f64 {
     let middle = rolling.middle().filter(|_| rolling.has_pitch);
-    let way = middle.map(|middle| (middle.advance * rolling.engagement.pitch).abs()).filter(|way| *way > 0.0);
+    let way = middle.and_then(|middle| way_to_next(middle, rolling.engagement.pitch, teeth));
     way.map_or(FARTHEST, |way| FARTHEST.min(SHARE * way))
+}
+
+/// From a tooth to the next along the normal of a contact, mm: as the members go on with the roll, or by the teeth of one that turns. Where one
+/// stands and the other goes around in it, as the disc of a cycloidal drive does, neither goes on along the normal. `None` where nothing tells.
+fn way_to_next(at: &ContactPoint, pitch: f64, teeth: [Option<u32>; 2]) -> Option<f64> {
+    let by_teeth = (0..2).filter_map(|k| {
+        let ([x, y, _], [nx, ny, _]) = (at.in_members[k], at.normals[k]);
+        Some((x * ny - y * nx).abs() * TAU / f64::from(teeth[k]?))
+    });
+    let ways = by_teeth.chain([(at.advance * pitch).abs()]);
+    ways.reduce(f64::max).filter(|way| *way > NO_WAY)
 }
 
 fn pattern(members: &Members<'_, '_>, member: usize, gaps: &[Option<Gap>], compound: f64) -> ContactPattern {

@@ -300,7 +300,8 @@ pub struct Backlash {
     pub normal: f64,
 }
 
-/// The room that the edges of a tooth have in the space of its mate, beside the flanks of the contact.
+/// The room that the edges of a tooth have in the space of its mate, beside the flanks of the contact; from these where an edge cuts into them away from
+/// the contact.
 #[derive(Clone, Debug, Serialize, JsonSchema)]
 pub struct Clearance {
     /// The flank whose edges they are.
@@ -360,6 +361,9 @@ pub struct VhjRow {
     pub axes: Vec<String>,
     /// Their errors, mm, in the order of `axes`; null where no mounting along them brings it there.
     pub errors: Option<Vec<f64>>,
+    /// What the contact has beyond its range there, the unknown or a motion or parameter of a flank, with its value: so mounted, the pair is
+    /// found with a wider range of it.
+    pub beyond: Vec<String>,
 }
 
 impl Answer for ContactResult {

@@ -178,7 +178,11 @@ impl ContactResult {
                 let (to, lengthwise) = (&row.to, fixed(row.lengthwise, 1));
                 let nothing = || format!("no {} bring the contact there", row.axes.join(" and "));
                 let mounting = row.errors.as_deref().map_or_else(nothing, mounted);
-                writeln!(f, "  to {to:9} lengthwise {lengthwise}: {mounting}{unchanged}")?;
+                let beyond = match row.beyond.len() {
+                    0 => String::new(),
+                    _ => format!("; beyond its range: {}", row.beyond.join(", ")),
+                };
+                writeln!(f, "  to {to:9} lengthwise {lengthwise}: {mounting}{unchanged}{beyond}")?;
             }
             if let [Some(toe), .., Some(heel)] = &rows.iter().map(|row| row.errors.as_ref()).collect::<Vec<_>>()[..] {
                 let way: Vec<f64> = heel.iter().zip(toe.iter()).map(|(heel, toe)| heel - toe).collect();

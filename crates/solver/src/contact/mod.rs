@@ -8,6 +8,7 @@ mod change;
 mod corners;
 mod edge;
 mod mesh;
+mod nearest;
 mod outline;
 mod path;
 mod pattern;

@@ -24,14 +24,14 @@ const SPACED: f64 = 1.5;
 /// Points of the mate that are taken together where the nearest is looked for.
 const GROUP: usize = 8;
 /// Nodes that a thread takes at a time.
-const TILE: usize = 2 * LANES;
+pub(super) const TILE: usize = 2 * LANES;
 
 /// Distances from points of one flank along its normals to the other flank.
 #[derive(Clone, Debug)]
 pub struct GapProblem {
     /// Unknowns of the mate and a distance; a point and a normal in the mate's frame are parameters, and those of the pair.
-    along_normal: System,
-    ranges: Vec<Range>,
+    pub(super) along_normal: System,
+    pub(super) ranges: Vec<Range>,
     /// Where the teeth of the flank end, and those of the mate.
     own: Option<Outline>,
     outline: Option<Outline>,
@@ -46,8 +46,8 @@ pub struct GapProblem {
 pub struct Gap {
     /// Along the flank's normal, out of its body, mm. Negative where the mate reaches into it.
     pub distance: f64,
-    /// At which of the positions.
-    pub position: usize,
+    /// At which roll position.
+    pub roll: f64,
 }
 
 impl GapProblem {
@@ -102,7 +102,8 @@ impl GapProblem {
             return vec![None; nodes.len()];
         }
         let mate = Mate::new(points, reach);
-        nodes.par_chunks(TILE).flat_map_iter(|nodes| self.least_of(nodes, &poses, &mate)).collect()
+        let least = |nodes| self.least_of(nodes, (positions, &poses), &mate);
+        nodes.par_chunks(TILE).flat_map_iter(least).collect()
     }
 
     /// The same at each position: of each point the distances, position by position.
@@ -131,30 +132,40 @@ impl GapProblem {
         nodes.par_chunks(TILE).flat_map_iter(of_tile).collect()
     }
 
-    fn pose_at(&self, position: [f64; 2]) -> Pose {
+    pub(super) fn pose_at(&self, position: [f64; 2]) -> Pose {
         let mut pose = [0.0; 12];
         ScalarEvaluator::new(&self.pose).run(&[&position[..], &self.values].concat(), &mut pose);
         pose
     }
 
-    fn least_of(&self, nodes: &[SurfacePoint], poses: &[Pose], mate: &Mate<'_>) -> Vec<Option<Gap>> {
+    fn least_of(&self, nodes: &[SurfacePoint], at: (&[[f64; 2]], &[Pose]), mate: &Mate<'_>) -> Vec<Option<Gap>> {
         let mut newton = LaneNewton::new(&self.along_normal, &self.ranges);
-        nodes.chunks(LANES).flat_map(|nodes| self.least_in_lanes(&mut newton, nodes, poses, mate)).collect()
+        nodes.chunks(LANES).flat_map(|nodes| self.least_in_lanes(&mut newton, nodes, at, mate)).collect()
     }
 
     fn least_in_lanes(
         &self,
         newton: &mut LaneNewton<'_>,
         nodes: &[SurfacePoint],
-        poses: &[Pose],
+        (positions, poses): (&[[f64; 2]], &[Pose]),
         mate: &Mate<'_>,
     ) -> Vec<Option<Gap>> {
         let feet = self.feet(newton, nodes, poses, mate);
-        (0..nodes.len()).map(|lane| self.least_at(&nodes[lane], poses, feet.distances(lane), mate.reach)).collect()
+        let least = |(lane, node): (usize, &SurfacePoint)| {
+            let (distance, at) = self.least_at(node, poses, feet.distances(lane), mate.reach)?;
+            Some(Gap { distance, roll: positions[at][0] })
+        };
+        nodes.iter().enumerate().map(least).collect()
     }
 
     /// Where the normals of no more nodes than there are lanes meet the mate.
-    fn feet(&self, newton: &mut LaneNewton<'_>, nodes: &[SurfacePoint], poses: &[Pose], mate: &Mate<'_>) -> Feet {
+    pub(super) fn feet(
+        &self,
+        newton: &mut LaneNewton<'_>,
+        nodes: &[SurfacePoint],
+        poses: &[Pose],
+        mate: &Mate<'_>,
+    ) -> Feet {
         let mut feet = Feet::new(self.ranges.len(), poses.len());
         let is_on_tooth: Vec<bool> =
             nodes.iter().map(|node| node.outcome == Outcome::Solved && self.is_on_tooth(node)).collect();
@@ -219,25 +230,25 @@ impl GapProblem {
         }
     }
 
-    /// The least of the distances by position of a node.
+    /// The least of the distances by position of a node, and at which it is.
     fn least_at(
         &self,
         node: &SurfacePoint,
         poses: &[Pose],
         distances: impl Iterator<Item = Option<f64>>,
         reach: f64,
-    ) -> Option<Gap> {
+    ) -> Option<(f64, usize)> {
         let mut near: Vec<(usize, f64)> = distances
             .enumerate()
             .filter_map(|(position, distance)| Some((position, distance.filter(|distance| distance.abs() <= reach)?)))
             .collect();
         near.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
         let on_mate = near.into_iter().find(|(at, distance)| self.is_on_mate(&seen(&poses[*at], node), *distance));
-        on_mate.map(|(position, distance)| Gap { distance, position })
+        on_mate.map(|(position, distance)| (distance, position))
     }
 
     /// The distances by position of a node, where the mate's tooth is there.
-    fn on_mate<'f>(
+    pub(super) fn on_mate<'f>(
         &'f self,
         node: &'f SurfacePoint,
         poses: &'f [Pose],
@@ -247,6 +258,13 @@ impl GapProblem {
         distances.zip(poses).map(move |(distance, pose)| {
             distance.filter(|distance| distance.abs() <= reach && self.is_on_mate(&seen(pose, node), *distance))
         })
+    }
+
+    /// The distance at one position, found from a foot at another one; `None` where the normal does not meet the mate's tooth within reach.
+    pub(super) fn distance_at(&self, node: &SurfacePoint, at: [f64; 2], start: &[f64], reach: f64) -> Option<f64> {
+        let asked = seen(&self.pose_at(at), node);
+        let distance = *self.alone(&asked, start)?.last()?;
+        (distance.abs() <= reach && self.is_on_mate(&asked, distance)).then_some(distance)
     }
 
     fn alone(&self, asked: &[f64; 6], start: &[f64]) -> Option<Vec<f64>> {
@@ -275,7 +293,7 @@ fn seen(pose: &Pose, node: &SurfacePoint) -> [f64; 6] {
 }
 
 /// Where normals of nodes meet the mate, by position and lane.
-struct Feet {
+pub(super) struct Feet {
     unknowns: usize,
     /// Of each position the unknowns, one after the other; no number where the normal does not meet the mate.
     at: Vec<Lanes>,
@@ -333,8 +351,13 @@ impl Feet {
         true
     }
 
+    /// The unknowns and the distance of one.
+    pub(super) fn foot(&self, position: usize, lane: usize) -> Vec<f64> {
+        self.of(position).iter().map(|at| at[lane]).collect()
+    }
+
     /// Of a lane by position.
-    fn distances(&self, lane: usize) -> impl Iterator<Item = Option<f64>> {
+    pub(super) fn distances(&self, lane: usize) -> impl Iterator<Item = Option<f64>> {
         self.at.chunks(self.unknowns).map(move |at| Some(at[at.len() - 1][lane]).filter(|distance| !distance.is_nan()))
     }
 }
@@ -345,7 +368,7 @@ fn put(newton: &mut LaneNewton<'_>, lane: usize, start: &[f64]) -> bool {
 }
 
 /// Solved points of the mate, from which feet are looked for.
-struct Mate<'p> {
+pub(super) struct Mate<'p> {
     points: Vec<&'p SurfacePoint>,
     /// Neighbours in the order of the points, with a ball around each group.
     groups: Vec<Group>,
@@ -372,7 +395,7 @@ struct Start {
 }
 
 impl<'p> Mate<'p> {
-    fn new(points: Vec<&'p SurfacePoint>, reach: f64) -> Mate<'p> {
+    pub(super) fn new(points: Vec<&'p SurfacePoint>, reach: f64) -> Mate<'p> {
         let group = |first: usize| {
             let range = first..(first + GROUP).min(points.len());
             let of = &points[range.clone()];

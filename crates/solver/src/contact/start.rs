@@ -113,6 +113,19 @@ impl ContactProblem {
         all
     }
 
+    /// Whether points of the first flank are in the blank of the second one at a roll position and a lag, in its teeth or between them.
+    pub fn within_mate(&self, roll: f64, lag: f64, first: &[SurfacePoint]) -> Vec<bool> {
+        let [of_first, of_second] = self.poses_at(lag, roll);
+        let is_within = |point: &SurfacePoint| {
+            let place = placed(&of_first, point.position);
+            let off: [f64; 3] = std::array::from_fn(|k| place[k] - of_second[k]);
+            let [x, y, z] =
+                std::array::from_fn(|k| (0..3).map(|row| of_second[3 + 3 * row + k] * off[row]).sum::<f64>());
+            self.outlines[1].as_ref().is_none_or(|outline| outline.holds([z, x.hypot(y)]))
+        };
+        first.iter().map(is_within).collect()
+    }
+
     fn find_from(&self, roll: f64, points: [&[SurfacePoint]; 2]) -> Result<ContactPoint, NoContact> {
         let mut passing = self.passing(roll, points, true)?;
         passing.sort_by(|a, b| b.height.total_cmp(&a.height));

@@ -16,14 +16,20 @@ const ALONG: [f64; 5] = [0.0, 0.25, 0.5, 0.75, 1.0];
 /// Known points of neighbouring spaces nearer than this, as a share of the pitch, may belong to surfaces that end in one line.
 const NEAR: f64 = 0.1;
 
-/// What the surfaces of a space have in common with their neighbours, and by which unknown the rows of each are told apart.
+/// What the surfaces of a space have in common with their neighbours.
 pub(crate) struct Borders<'j, 'g> {
     /// Between each surface and the one behind it.
     joints: Vec<Joint<'j, 'g>>,
     /// Where teeth end in an edge: between the last surface of the space before and the first one, and between the last one and the first one
     /// of the space behind.
     edges: Option<[Joint<'j, 'g>; 2]>,
-    pub(crate) unknowns: Vec<usize>,
+}
+
+/// A line on which the rows of a surface end, at shares along the space.
+pub(crate) struct Border {
+    /// Of the unknown by which rows are told apart.
+    pub(crate) values: Vec<f64>,
+    pub(crate) points: Vec<[f64; 3]>,
 }
 
 /// The last surface of a space and the first one of the next, for this space as the next and for it as the one before.
@@ -72,10 +78,7 @@ impl<'j, 'g> Borders<'j, 'g> {
         let known = first.and_then(|first| first.edges.as_ref()).map(|edges| &edges[0].shared);
         let within = lines_within(&joints);
         let edges = edges(beside, |pieces| edge(solid, (pieces, known, within), blank));
-        let mut borders = Borders { joints, edges, unknowns: Vec::new() };
-        borders.unknowns =
-            (0..pieces.len()).map(|k| borders.unknown(solid, &pieces[k], k, blank)).collect::<Result<_, Failure>>()?;
-        Ok(borders)
+        Ok(Borders { joints, edges })
     }
 
     /// The same with teeth that end where the flanks of neighbouring spaces meet.
@@ -104,36 +107,54 @@ impl<'j, 'g> Borders<'j, 'g> {
         self.edges.is_some()
     }
 
-    fn unknown(&self, solid: &Solid, piece: &Piece<'_, '_>, k: usize, blank: &Blank) -> Result<usize, Failure> {
+    /// The unknowns of a surface by which its rows may be told apart, those first by which it ends at its neighbours.
+    ///
+    /// # Errors
+    /// If none runs across the space.
+    pub(crate) fn across(
+        &self,
+        solid: &Solid,
+        piece: &Piece<'_, '_>,
+        k: usize,
+        blank: &Blank,
+    ) -> Result<Vec<usize>, Failure> {
         let name = &piece.surface.name;
-        let said = [0, 1].map(|side| self.joint(k, side).and_then(|(joint, own)| joint.unknown(own)));
-        match said {
-            [Some(a), Some(b)] if a != b => {
-                let of = [a, b].map(|unknown| &piece.surface.unknowns[unknown].name);
+        let mut all: Vec<usize> = self.said(k).into_iter().flatten().collect();
+        if all.is_empty() {
+            all.push(piece.across_tool(blank).ok_or_else(|| {
+                let of: Vec<&str> = piece.surface.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
                 let message = format!(
-                    "`{name}` of `{}` ends at one neighbour by `{}` and at the other by `{}`: its rows have no common unknown",
-                    solid.name, of[0], of[1]
+                    "the sampled points of `{name}` lie in one row along the spaces of `{}`: each of its unknowns, {}, follows from how far \
+                     along they lie, and none says what runs across the space",
+                    solid.name,
+                    of.join(" and ")
                 );
-                Err(refused(solid, message, &["surfaces of the tool that end at both neighbours by the same unknown"]))
-            }
-            [Some(unknown), _] | [_, Some(unknown)] => Ok(unknown),
-            [None, None] => {
-                let alike = || {
-                    let of: Vec<&str> = piece.surface.unknowns.iter().map(|unknown| unknown.name.as_str()).collect();
-                    let message = format!(
-                        "the sampled points of `{name}` lie in one row along the spaces of `{}`: each of its unknowns, {}, follows from how \
-                         far along they lie, and none says what runs across the space",
-                        solid.name,
-                        of.join(" and ")
-                    );
-                    let way = format!(
-                        "in `sample {name}` three values or more of what runs from one flank to the other, each with several along the space"
-                    );
-                    refused(solid, message, &[&way])
-                };
-                piece.across_tool(blank).ok_or_else(alike)
-            }
+                let way = format!(
+                    "in `sample {name}` three values or more of what runs from one flank to the other, each with several along the space"
+                );
+                refused(solid, message, &[&way])
+            })?);
         }
+        all.extend(piece.telling_rows(blank));
+        let is_first = |at: &usize| !all[..*at].contains(&all[*at]);
+        Ok((0..all.len()).filter(is_first).map(|at| all[at]).collect())
+    }
+
+    /// That a surface ends at both neighbours by different unknowns, none of which tells all of its rows apart.
+    pub(crate) fn of_two_unknowns(&self, solid: &Solid, piece: &Piece<'_, '_>, k: usize) -> Option<Failure> {
+        let [Some(a), Some(b)] = self.said(k) else { return None };
+        let of = [a, b].map(|unknown| &piece.surface.unknowns[unknown].name);
+        let message = format!(
+            "`{}` of `{}` ends at one neighbour by `{}` and at the other by `{}`: its rows have no common unknown",
+            piece.surface.name, solid.name, of[0], of[1]
+        );
+        let way = "surfaces of the tool that end at both neighbours by the same unknown";
+        (a != b).then(|| refused(solid, message, &[way]))
+    }
+
+    /// The unknowns by which a surface ends at the one before and behind it.
+    fn said(&self, k: usize) -> [Option<usize>; 2] {
+        [0, 1].map(|side| self.joint(k, side).and_then(|(joint, own)| joint.unknown(own)))
     }
 
     /// What a surface has in common with the one before (0) or behind it (1), and which of both it is there.
@@ -147,20 +168,23 @@ impl<'j, 'g> Borders<'j, 'g> {
         }
     }
 
-    /// The values of a surface's unknown on the line that it shares with the one before (0) or behind it (1); `None` at the tip.
+    /// The line that a surface shares with the one before (0) or behind it (1), with the values of one of its unknowns; `None` at the tip.
     ///
     /// # Errors
     /// If the line is not found all along the space.
-    pub(crate) fn values(
+    pub(crate) fn border(
         &self,
         solid: &Solid,
         (k, side): (usize, usize),
-        blank: &Blank,
+        (unknown, blank): (usize, &Blank),
         shares: &[f64],
-    ) -> Option<Result<Vec<f64>, Failure>> {
+    ) -> Option<Result<Border, Failure>> {
         let (joint, own) = self.joint(k, side)?;
-        let values = joint.values(own, self.unknowns[k], blank, shares);
-        Some(values.ok_or_else(|| lost(solid, joint.pieces.each_ref(), blank)))
+        let border = joint.border(own, unknown, blank, shares).map(|border| {
+            let points = border.points.into_iter().map(|point| joint.pieces[own].in_own_space(point)).collect();
+            Border { points, ..border }
+        });
+        Some(border.ok_or_else(|| lost(solid, joint.pieces.each_ref(), blank)))
     }
 }
 
@@ -214,18 +238,22 @@ impl Joint<'_, '_> {
         }
     }
 
-    fn values(&self, own: usize, unknown: usize, blank: &Blank, shares: &[f64]) -> Option<Vec<f64>> {
+    fn border(&self, own: usize, unknown: usize, blank: &Blank, shares: &[f64]) -> Option<Border> {
         match &self.shared {
-            Shared::Ends(lines) => Some(vec![lines[own].1; shares.len()]),
-            Shared::Onto { ending, line } if *ending == own => Some(vec![line.1; shares.len()]),
-            Shared::Onto { ending, line } => {
-                let points = self.pieces[*ending].on_line(*line, blank, shares);
-                let is_whole = points.solved() == shares.len();
-                is_whole.then(|| self.pieces[own].values_at(&positions(&points), unknown, blank)).flatten()
-            }
             Shared::Meeting(course) => {
-                let points = course.at(blank, shares)?;
-                Some(points.iter().map(|of| of[own].unknowns[unknown]).collect())
+                let met = course.at(blank, shares)?;
+                let values = met.iter().map(|of| of[own].unknowns[unknown]).collect();
+                Some(Border { values, points: met.iter().map(|of| of[own].position).collect() })
+            }
+            Shared::Onto { ending, line } if *ending != own => {
+                let points = self.pieces[*ending].on_line(*line, blank, shares);
+                let points = (points.solved() == shares.len()).then(|| positions(&points))?;
+                Some(Border { values: self.pieces[own].values_at(&points, unknown, blank)?, points })
+            }
+            Shared::Ends(_) | Shared::Onto { .. } => {
+                let points = self.pieces[own].on_line(self.line(own)?, blank, shares);
+                let values = || (0..points.len()).map(|k| points.unknowns(k)[unknown]).collect();
+                (points.solved() == shares.len()).then(|| Border { values: values(), points: positions(&points) })
             }
         }
     }

@@ -36,6 +36,8 @@ pub(crate) struct Piece<'j, 'g> {
     pub(crate) surface: Cow<'j, GeneratedSurface<'g>>,
     pub(crate) arrangement: Arrangement,
     session: Session<'j>,
+    /// How far it is from the space that the job describes, about the work's axis or along its line.
+    moved_by: f64,
     pub(crate) known: Vec<SurfacePoint>,
     /// The problems of coordinates that were asked for.
     problems: RefCell<Vec<([Expr<'g>; 2], Rc<SurfaceProblem>)>>,
@@ -82,7 +84,7 @@ impl<'j, 'g> Piece<'j, 'g> {
         let problem = || problem(job, surface, coordinates, session);
         let piece = |known| {
             let surface = Cow::Borrowed(surface);
-            Piece { job, surface, arrangement, session, known, problems: RefCell::default() }
+            Piece { job, surface, arrangement, session, moved_by: 0.0, known, problems: RefCell::default() }
         };
         if let Some(known) = led_to(before).and_then(|start| whole(&problem(), &sample, &start)) {
             return Ok(piece(known));
@@ -116,9 +118,15 @@ impl<'j, 'g> Piece<'j, 'g> {
         Piece {
             known: known.collect(),
             surface: Cow::Owned(GeneratedSurface { surface: moved, ..self.surface.clone().into_owned() }),
+            moved_by: self.moved_by + by,
             problems: RefCell::default(),
             ..*self
         }
+    }
+
+    /// Where a point of it lies in the space that the job describes.
+    pub(crate) fn in_own_space(&self, point: [f64; 3]) -> [f64; 3] {
+        if self.moved_by == 0.0 { point } else { self.arrangement.moved(point, -self.moved_by) }
     }
 
     /// The job that has it: where spaces differ, that of its space.
@@ -160,9 +168,13 @@ impl<'j, 'g> Piece<'j, 'g> {
     pub(crate) fn across_tool(&self, blank: &Blank) -> Option<usize> {
         let made = &self.surface;
         let of_profile = made.unknowns.iter().position(|unknown| unknown.piece.is_some());
-        of_profile.or_else(|| {
-            self.of(EndsOf::Tool).chain(self.of(EndsOf::Motions)).find(|unknown| self.tells_rows(*unknown, blank))
-        })
+        of_profile.or_else(|| self.telling_rows(blank).next())
+    }
+
+    /// The unknowns that say more than how far along the space a point lies, those of the tool first.
+    pub(crate) fn telling_rows(&self, blank: &Blank) -> impl Iterator<Item = usize> {
+        let all = self.of(EndsOf::Tool).chain(self.of(EndsOf::Motions));
+        all.filter(|unknown| self.tells_rows(*unknown, blank))
     }
 
     /// Whether an unknown is more than a linear function of the way along at the known points.

@@ -258,6 +258,19 @@ pub(crate) fn elsewhere(solid: &Solid, blank: &Blank, surfaces: &[(&str, Vec<[f6
     Some(refused(solid, message, &[&way]))
 }
 
+/// That a surface turns back in the unknown by which its rows are told apart, so that this has one value at several of them.
+pub(crate) fn folded(solid: &Solid, surface: &GeneratedSurface<'_>, unknown: usize, off: f64) -> Failure {
+    let (name, unknown) = (&surface.name, &surface.unknowns[unknown].name);
+    let message = format!(
+        "`{name}` turns back in `{unknown}` on its way across the spaces of `{}`: by that its rows lead to another place than where it ends, {} \
+         off, and none of its other unknowns tells them apart",
+        solid.name,
+        length(off)
+    );
+    let way = format!("two surfaces instead of `{name}`, one on each side of where `{unknown}` is least or largest");
+    refused(solid, message, &[&way])
+}
+
 /// The way out where surfaces cross: they are neighbours, once what lies between them is gone.
 fn crossed([first, second]: [usize; 2], names: &[&str]) -> String {
     let between: Vec<String> =

@@ -9,9 +9,9 @@ use crate::project::failure::Failure;
 use crate::project::remark::NotDone;
 use crate::project::session::Session;
 use crate::solve::blank;
-use crate::solve::body::borders::{Beside, Borders};
+use crate::solve::body::borders::{Beside, Border, Borders};
 use crate::solve::body::ends;
-use crate::solve::body::piece::{Piece, positions};
+use crate::solve::body::piece::{Piece, SAME_LINE, apart, positions};
 use crate::solve::body::refusal::{self, refused};
 use crate::solve::body::uncut::{self, Nodes, Uncut};
 
@@ -57,6 +57,8 @@ impl Space {
 #[derive(Clone)]
 struct Charted {
     chart: Chart,
+    /// By which its rows are told apart.
+    unknown: usize,
     nodes: Nodes,
     facing: f64,
 }
@@ -82,6 +84,8 @@ struct Between {
     facing: Vec<f64>,
     /// Of all spaces.
     nodes: Vec<Vec<Nodes>>,
+    /// By which the rows of each are told apart.
+    unknowns: Vec<Vec<usize>>,
 }
 
 /// # Errors
@@ -112,9 +116,8 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
     };
     let faulty = |fault: BodyFault, has_edge: bool| outside(refusal::faulty(solid, (&blank, &names, has_edge), fault));
     let first = between(solid, (&spaces, &borders, &blank), session).map_err(outside)?;
-    let unknowns: Vec<Vec<usize>> = borders.iter().map(|borders| borders.unknowns.clone()).collect();
-    let (body, off, facing, nodes) = match first.body {
-        Ok(body) => (body, first.off, first.facing, first.nodes),
+    let (body, off, facing, nodes, unknowns) = match first.body {
+        Ok(body) => (body, first.off, first.facing, first.nodes, first.unknowns),
         Err(fault) => {
             let has_edge = borders[0].has_edge();
             let is_pointed = matches!(fault, BodyFault::Pointed { is_whole: true, .. });
@@ -123,8 +126,8 @@ pub(crate) fn body(job: &Job<'_>, solid: &Solid, session: Session<'_>) -> Result
                 .zip(&beside)
                 .map(|(borders, beside)| borders.meeting_in_an_edge(beside, &blank).filter(|_| is_pointed));
             let borders: Vec<Borders<'_, '_>> = edges.collect::<Option<_>>().ok_or_else(|| faulty(fault, has_edge))?;
-            let Between { body, off, facing, nodes } = between(solid, (&spaces, &borders, &blank), session)?;
-            (body.map_err(|fault| faulty(fault, true))?, off, facing, nodes)
+            let Between { body, off, facing, nodes, unknowns } = between(solid, (&spaces, &borders, &blank), session)?;
+            (body.map_err(|fault| faulty(fault, true))?, off, facing, nodes, unknowns)
         }
     };
     let names: Vec<String> = names.into_iter().map(str::to_string).collect();
@@ -224,8 +227,11 @@ fn between(
             session.check()?;
             let made = |k: usize| {
                 let counts = [COUNTS[rows[k]], COUNTS[columns]];
-                let known = charts.get(k).filter(|charted| charted.chart.counts() == counts).cloned();
-                known.map_or_else(|| chart((solid, k), &pieces[k], (borders, blank), counts), Ok)
+                match charts.get(k) {
+                    Some(charted) if charted.chart.counts() == counts => Ok(charted.clone()),
+                    Some(charted) => chart((solid, k), (&pieces[k], charted.unknown), (borders, blank), counts),
+                    None => first_chart((solid, k), &pieces[k], (borders, blank), counts),
+                }
             };
             *charts = (0..pieces.len()).map(made).collect::<Result<_, Failure>>()?;
         }
@@ -244,9 +250,10 @@ fn between(
             let facing = charts[0].iter().map(|charted| charted.facing).collect();
             let nodes =
                 charts.iter().map(|space| space.iter().map(|charted| charted.nodes.clone()).collect()).collect();
+            let unknowns = charts.iter().map(|space| space.iter().map(|charted| charted.unknown).collect()).collect();
             let charts = charts.into_iter().map(|space| space.into_iter().map(|charted| charted.chart).collect());
             let body = Body::new(blank.clone(), (arrangement, solid.teeth), charts.collect(), borders[0].has_edge());
-            return Ok(Between { body, off, facing, nodes });
+            return Ok(Between { body, off, facing, nodes, unknowns });
         }
     }
 }
@@ -255,19 +262,39 @@ fn larger(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|k| a[k].max(b[k]))
 }
 
-/// The chart of a surface between its borders.
-fn chart(
+/// The chart of a surface by the first of its unknowns that tells all of its rows apart.
+fn first_chart(
     (solid, k): (&Solid, usize),
     piece: &Piece<'_, '_>,
     (borders, blank): (&Borders<'_, '_>, &Blank),
+    counts: [usize; 2],
+) -> Result<Charted, Failure> {
+    let mut first = None;
+    for unknown in borders.across(solid, piece, k, blank)? {
+        match chart((solid, k), (piece, unknown), (borders, blank), counts) {
+            Ok(charted) => return Ok(charted),
+            Err(failure @ Failure::NotDone(_)) => first = first.or(Some(failure)),
+            Err(failure) => return Err(failure),
+        }
+    }
+    let failure = borders.of_two_unknowns(solid, piece, k).or(first);
+    Err(failure.expect("some unknown was tried"))
+}
+
+/// The chart of a surface between its borders, whose rows an unknown tells apart.
+fn chart(
+    (solid, k): (&Solid, usize),
+    (piece, unknown): (&Piece<'_, '_>, usize),
+    (borders, blank): (&Borders<'_, '_>, &Blank),
     [rows, columns]: [usize; 2],
 ) -> Result<Charted, Failure> {
-    let (unknown, shares, along) = (borders.unknowns[k], Chart::shares(rows), Chart::shares(columns));
+    let (shares, along) = (Chart::shares(rows), Chart::shares(columns));
     let end = |side: usize| {
-        let shared = borders.values(solid, (k, side), blank, &along);
+        let shared = borders.border(solid, (k, side), (unknown, blank), &along);
         shared.unwrap_or_else(|| at_tip(solid, piece, (unknown, blank), &along))
     };
-    let ends = [end(0)?, end(1)?];
+    let borders = [end(0)?, end(1)?];
+    let ends = borders.each_ref().map(|border| &border.values);
     let value = |i: usize, j: usize| (1.0 - shares[i]) * ends[0][j] + shares[i] * ends[1][j];
     let targets: Vec<[f64; 2]> =
         (0..rows).flat_map(|i| (0..columns).map(move |j| (i, j))).map(|(i, j)| [value(i, j), along[j]]).collect();
@@ -278,22 +305,30 @@ fn chart(
     };
     let points = piece.solved(piece.across(unknown, blank), (&targets, [rows, columns]), far);
     all_solved(solid, (piece, "its neighbours and the tip"), &points)?;
+    let row = |i: usize| (0..columns).map(move |j| i * columns + j);
+    for (border, row) in borders.iter().zip([row(0), row(rows - 1)]) {
+        let reached = row.map(|at| points.point(at).position);
+        let off = reached.zip(&border.points).map(|(own, there)| apart(own, *there)).fold(0.0, f64::max);
+        if off > SAME_LINE {
+            return Err(refusal::folded(solid, &piece.surface, unknown, off));
+        }
+    }
     let chart = Chart::through(positions(&points), [rows, columns]);
     // of odd numbers of rows and columns there is a point in the middle
     let normal = Vector3::from(points.point(rows / 2 * columns + columns / 2).normal);
     let [_, across, far] = chart.frame([0.5; 2]).map(Vector3::from);
     let nodes =
         Nodes { points: (0..points.len()).map(|k| points.point(k)).collect(), targets, counts: [rows, columns] };
-    Ok(Charted { facing: normal.dot(&far.cross(&across)), chart, nodes })
+    Ok(Charted { facing: normal.dot(&far.cross(&across)), chart, unknown, nodes })
 }
 
-/// The values of an unknown where a surface reaches the tip.
+/// Where a surface reaches the tip, with the values of an unknown.
 fn at_tip(
     solid: &Solid,
     piece: &Piece<'_, '_>,
     (unknown, blank): (usize, &Blank),
     shares: &[f64],
-) -> Result<Vec<f64>, Failure> {
+) -> Result<Border, Failure> {
     let targets: Vec<[f64; 2]> = shares.iter().map(|share| blank.tip(*share)).collect();
     let middle = targets[targets.len() / 2];
     let far = |point: &SurfacePoint| {
@@ -304,7 +339,7 @@ fn at_tip(
     if points.solved() < shares.len()
         && let Some(end) = end_at_tip(piece, (unknown, blank), shares)
     {
-        return Ok(vec![end; shares.len()]);
+        return Ok(end);
     }
     let tip = format!(
         "`{}` of the outline, where the first surface of a space begins and the last one ends,",
@@ -318,17 +353,19 @@ fn at_tip(
         let is_beyond_tool = piece.beyond(&points).iter().any(|(unknown, _)| piece.is_of_tool(*unknown));
         if is_beyond_tool { refusal::with_way(failure, between) } else { failure }
     })?;
-    Ok((0..points.len()).map(|k| points.unknowns(k)[unknown]).collect())
+    let values = (0..points.len()).map(|k| points.unknowns(k)[unknown]).collect();
+    Ok(Border { values, points: positions(&points) })
 }
 
 /// The end of an unknown's range at which a surface lies on the tip all along. Where it only touches the tip there, as a rounded edge does
 /// that ends in its crest, rounding decides whether it has a point as high as the tip.
-fn end_at_tip(piece: &Piece<'_, '_>, (unknown, blank): (usize, &Blank), shares: &[f64]) -> Option<f64> {
+fn end_at_tip(piece: &Piece<'_, '_>, (unknown, blank): (usize, &Blank), shares: &[f64]) -> Option<Border> {
     let is_on_tip = |point: &[f64; 3]| blank.above_tip(piece.arrangement.section(*point)).abs() <= EXACT;
     let range = piece.bound().ranges()[unknown];
-    [range.low, range.high].into_iter().filter(|end| end.is_finite()).find(|end| {
-        let points = piece.on_line((unknown, *end), blank, shares);
-        points.solved() == shares.len() && positions(&points).iter().all(is_on_tip)
+    [range.low, range.high].into_iter().filter(|end| end.is_finite()).find_map(|end| {
+        let points = piece.on_line((unknown, end), blank, shares);
+        let border = || Border { values: vec![end; shares.len()], points: positions(&points) };
+        (points.solved() == shares.len()).then(border).filter(|border| border.points.iter().all(is_on_tip))
     })
 }
 

@@ -152,13 +152,17 @@ impl<'c> Judge<'c> {
         let motions: Vec<Vec<f64>> = points.iter().map(|point| self.cutting.motions(point, self.is_own)).collect();
         for running in 0..self.cutting.ranges.len() {
             let ways = self.ways(points, &motions, running);
-            for seen in &mut self.seen {
+            for number in 0..self.seen.len() {
+                let (before, rest) = self.seen.split_at_mut(number);
+                let Some((seen, after)) = rest.split_first_mut() else { continue };
+                let mut others = [before, after];
                 let (sights, looks) = seen.sights(&ways);
                 self.looks += points.len() as u64 + looks;
                 let each = points.iter().zip(&motions).zip(sights).zip(&mut deepest);
                 for (((point, motions), mut sights), deepest) in each {
                     let (point, motions) = (Vector3::from(point.position), motions.clone());
-                    let mut way = Way { poses: &mut self.poses, seen, point, motions, running, looks: 0 };
+                    let (poses, others) = (&mut self.poses, &mut others);
+                    let mut way = Way { poses, seen, others, point, motions, running, looks: 0 };
                     let cut = way.cut(&mut sights);
                     self.looks += way.looks;
                     *deepest = (*deepest).into_iter().chain(cut).reduce(Cut::deeper);
@@ -166,7 +170,7 @@ impl<'c> Judge<'c> {
             }
             if !self.is_own {
                 for (places, deepest) in ways.iter().zip(&mut deepest).filter(|(_, deepest)| deepest.is_none()) {
-                    *deepest = self.seen.iter_mut().filter_map(|seen| seen.always_over(places)).reduce(Cut::deeper);
+                    *deepest = always_in(&mut self.seen, places);
                 }
             }
         }
@@ -210,6 +214,17 @@ impl<'c> Judge<'c> {
         };
         points.iter().zip(motions).map(way).collect()
     }
+}
+
+/// The cut of a point that is in the steel behind some piece at all its places: it enters that nowhere, as it never comes out.
+fn always_in(seen: &mut [Seen<'_>], places: &[Place]) -> Option<Cut> {
+    let count = seen.len();
+    let one = |number: usize| {
+        let (before, rest) = seen.split_at_mut(number);
+        let (seen, after) = rest.split_first_mut()?;
+        seen.always_over(places, &mut [before, after])
+    };
+    (0..count).filter_map(one).reduce(Cut::deeper)
 }
 
 /// Verdicts that spread over a grid.

@@ -23,6 +23,10 @@ const APART: f64 = 0.5;
 const MOST_HALVINGS: u32 = 14;
 /// The depth is measured to feet that lie beyond the end of a piece by no more than this share of it.
 const PAST: f64 = 0.01;
+/// Halvings of the way until a place in the steel is found, and the one where the way comes out again: to rounding.
+const MOST_ENTERED: usize = 40;
+/// A piece is nearer than another one if it is no farther away than this share of that: at an edge both are as near.
+const NEARER: f64 = 1.0 - 1e-9;
 /// Steps in which the greatest depth is looked for.
 const STEPS_DOWN: usize = 30;
 
@@ -205,10 +209,15 @@ impl Pose {
     }
 }
 
+/// The pieces of a tool that come before one, and those behind it.
+pub(super) type Others<'o, 'c> = [&'o mut [Seen<'c>]; 2];
+
 /// One point of the work, one motion that runs, one piece of the tool.
-pub(super) struct Way<'w, 'c> {
+pub(super) struct Way<'w, 'o, 'c> {
     pub(super) poses: &'w mut Poses<'c>,
     pub(super) seen: &'w mut Seen<'c>,
+    /// The other pieces of the tool.
+    pub(super) others: &'w mut Others<'o, 'c>,
     /// Of the work.
     pub(super) point: Vector3<f64>,
     pub(super) motions: Vec<f64>,
@@ -257,11 +266,14 @@ impl<'c> Seen<'c> {
         })
     }
 
-    /// The cut of a point that lies behind the piece at all its places: it enters the steel nowhere, as it never comes out.
-    pub(super) fn always_over(&mut self, places: &[Place]) -> Option<Cut> {
+    /// The cut of a point that is in the steel behind the piece at all its places.
+    pub(super) fn always_over(&mut self, places: &[Place], others: &mut Others<'_, 'c>) -> Option<Cut> {
         let by = self.piece.number;
-        let deeper = |depth: f64, clearance: Option<f64>| clearance.filter(|c| *c < -TOUCH).map(|c| depth.max(-c));
-        let depth = self.clearances(places).try_fold(0.0, deeper)?;
+        let mut depth = 0.0_f64;
+        for (place, clearance) in places.iter().zip(self.clearances(places)) {
+            let behind = -clearance.filter(|clearance| *clearance < -TOUCH)?;
+            depth = depth.max(Some(behind).filter(|behind| is_in_steel(others, &place.point, *behind))?);
+        }
         Some(Cut { by, depth })
     }
 
@@ -269,6 +281,17 @@ impl<'c> Seen<'c> {
     pub(super) fn never_over(&mut self, places: &[Place]) -> bool {
         self.clearances(places).all(|clearance| clearance.is_some_and(|clearance| clearance > -TOUCH))
     }
+}
+
+/// Whether a point that lies so deep behind a piece of a tool, mm, is in its steel: it has come out where another piece is nearer to it that it
+/// lies before.
+fn is_in_steel(others: &mut Others<'_, '_>, point: &Vector3<f64>, behind: f64) -> bool {
+    others.iter_mut().flat_map(|of| of.iter_mut()).all(|other| {
+        let Some(near) = other.piece.near(point, behind, [None, None]) else { return true };
+        let Found::Foot(foot) = other.foot(point, near.at) else { return true };
+        let is_on = other.piece.side(foot.at) == [0, 0];
+        !(is_on && foot.clearance > TOUCH && foot.clearance < NEARER * behind)
+    })
 }
 
 impl Piece {
@@ -308,7 +331,7 @@ impl Sight {
     }
 }
 
-impl Way<'_, '_> {
+impl Way<'_, '_, '_> {
     /// Whether the piece cuts the point away on its way through some places, one after the other; one of them is where it is
     /// generated.
     pub(super) fn cut(&mut self, sights: &mut [Option<Sight>]) -> Option<Cut> {
@@ -373,7 +396,7 @@ impl Way<'_, '_> {
             let is_through = (clear_a - clear_b).abs() <= way;
             // the last halves may lie on both sides of the seam of a closed surface
             if is_on && is_through && (is_same || halvings >= MOST_HALVINGS) {
-                return Some(self.deepest(if clear_a < clear_b { *a } else { *b }, span));
+                return Some(self.deepest(if clear_a < clear_b { [*b, *a] } else { [*a, *b] }));
             }
             return self.halved(a, b, halvings);
         }
@@ -483,28 +506,73 @@ impl Way<'_, '_> {
         if a.place.motion < b.place.motion { self.between(a, b, halvings) } else { self.between(b, a, halvings) }
     }
 
-    /// How deep the point goes about a place where it is in the steel.
-    fn deepest(&mut self, sight: Sight, span: f64) -> Cut {
+    /// How deep the point goes on the way between two places from one before the piece to one behind it, or the other way round, as far as it is
+    /// in the steel: of a thin tooth it may have come out again.
+    fn deepest(&mut self, [outside, inside]: [Sight; 2]) -> Cut {
         let by = self.seen.piece.number;
         let range = self.poses.cutting.ranges[self.running];
-        let Some(Found::Foot(foot)) = sight.found else { return Cut { by, depth: TOUCH } };
+        let Some((sight, foot)) = self.entered([outside, inside]) else { return Cut { by, depth: TOUCH } };
         let mut depth = -foot.clearance;
         let mut motion = sight.place.motion;
+        let span = (inside.place.motion - outside.place.motion).abs();
         let mut step = if foot.rate(sight.place.velocity) > 0.0 { -0.5 * span } else { 0.5 * span };
+        let mut out = None;
         for _ in 0..STEPS_DOWN {
             let next = (motion + step).clamp(range.low, range.high);
-            let found = self.sight_at(next, &sight).and_then(|mut sight| self.foot(&mut sight).0);
-            // what lies so little beyond an end is as far from the end as from the continuation
-            match found.filter(|foot| self.seen.piece.past(foot.at) <= PAST * -foot.clearance) {
-                Some(foot) if -foot.clearance > depth => {
-                    depth = -foot.clearance;
-                    motion = next;
+            match self.depth_at(next, &sight) {
+                Some((there, true)) if there > depth => {
+                    (depth, motion) = (there, next);
                     step *= 2.0;
+                }
+                Some((there, false)) if there > depth => {
+                    out = Some(next);
+                    step *= -0.3;
                 }
                 _ => step *= -0.3,
             }
         }
+        let Some(mut out) = out else { return Cut { by, depth } };
+        for _ in 0..MOST_ENTERED {
+            let middle = 0.5 * (motion + out);
+            match self.depth_at(middle, &sight) {
+                Some((there, true)) if there > depth => (depth, motion) = (there, middle),
+                _ => out = middle,
+            }
+        }
         Cut { by, depth }
+    }
+
+    /// How deep the point lies behind the piece at a value of the motion, and whether it is in the steel there; `None` where the piece ends before.
+    fn depth_at(&mut self, motion: f64, near: &Sight) -> Option<(f64, bool)> {
+        let mut sight = self.sight_at(motion, near)?;
+        let foot = self.foot(&mut sight).0?;
+        let depth = -foot.clearance;
+        // what lies so little beyond an end is as far from the end as from the continuation
+        let is_on = self.seen.piece.past(foot.at) <= PAST * depth;
+        is_on.then(|| (depth, is_in_steel(self.others, &sight.place.point, depth)))
+    }
+
+    /// A place in the steel between two of which one lies before the piece and one behind it, with its foot: the latter, or one nearer to where the
+    /// way goes through the piece.
+    fn entered(&mut self, [outside, inside]: [Sight; 2]) -> Option<(Sight, Foot)> {
+        let (mut before, mut behind) = (outside.place.motion, inside);
+        for _ in 0..MOST_ENTERED {
+            let foot = self.foot(&mut behind).0?;
+            if is_in_steel(self.others, &behind.place.point, -foot.clearance) {
+                return Some((behind, foot));
+            }
+            // the last place that is known to lie behind stays
+            let mut middle = self.sight_at(0.5 * (before + behind.place.motion), &behind)?;
+            while self.foot(&mut middle).0?.clearance >= -TOUCH {
+                before = middle.place.motion;
+                middle = self.sight_at(0.5 * (before + behind.place.motion), &behind)?;
+                if middle.place.motion == before || middle.place.motion == behind.place.motion {
+                    return None;
+                }
+            }
+            behind = middle;
+        }
+        None
     }
 }
 
