@@ -29,19 +29,26 @@ impl<'r> CompositeLag<'r> {
             let is_step = (step - near).abs() < 1e-9;
             let carried = is_step.then(|| of.carried(near as isize)).flatten().filter(|_| rolling.has_pitch);
             match carried {
-                Some(carried) => of.point(carried.pair, near as isize).map(|point| (carried.pair, point.clone())),
+                Some(carried) => {
+                    let step = near as isize;
+                    of.point(carried.pair, step).map(|point| (carried.pair, Some(step), point.clone()))
+                }
                 None if rolling.has_pitch => None,
-                None => Some((0, rolling.problem.pair_at(of, 0, roll)?)),
+                None => Some((0, None, rolling.problem.pair_at(of, 0, roll)?)),
             }
         };
-        let known: Vec<Option<(isize, ContactPoint)>> = rolls.iter().map(|roll| at(*roll)).collect();
+        let known: Vec<Option<(isize, Option<isize>, ContactPoint)>> = rolls.iter().map(|roll| at(*roll)).collect();
         let stretches = rolls.windows(2).zip(known.windows(2)).map(|(rolls, known)| {
             let rolls = [rolls[0], rolls[1]];
             let ends = match known {
                 // both ends of where a pair hands over are those of the pair that carries on this side
-                [Some((pair, point)), None] => [Some(point.clone()), rolling.problem.pair_at(of, *pair, rolls[1])],
-                [None, Some((pair, point))] => [rolling.problem.pair_at(of, *pair, rolls[0]), Some(point.clone())],
-                [Some((a, first)), Some((b, second))] if a == b => [Some(first.clone()), Some(second.clone())],
+                [Some((pair, _, point)), None] => [Some(point.clone()), rolling.problem.pair_at(of, *pair, rolls[1])],
+                [None, Some((pair, _, point))] => [rolling.problem.pair_at(of, *pair, rolls[0]), Some(point.clone())],
+                [Some((a, _, first)), Some((b, _, second))] if a == b => [Some(first.clone()), Some(second.clone())],
+                // two pairs that turn alike hand nothing over
+                [Some((pair, _, first)), Some((_, Some(step), _))] => {
+                    [Some(first.clone()), of.point(*pair, *step).cloned()]
+                }
                 _ => [None, None],
             };
             Stretch { ends, rolls }

@@ -130,8 +130,7 @@ impl Expectation {
         let is_of_numbers = match &self.what {
             Expected::Near { value, target, .. } => !has_name(target) || is_worked_out(value) || is_worked_out(target),
             Expected::InRange { range: Range { low, high, .. }, .. } => {
-                [low, high].into_iter().all(|end| !has_name(end))
-                    || [low, high].into_iter().any(is_worked_out)
+                [low, high].into_iter().all(|end| !has_name(end)) || [low, high].into_iter().any(is_worked_out)
             }
             Expected::Status { at, .. } => at.as_ref().is_some_and(|at| !has_name(at)),
             _ => false,
