@@ -12,8 +12,12 @@ pub(crate) struct CompositeLag<'r> {
     stretches: Vec<Stretch>,
 }
 
+/// Halves of the way from one roll position to the next in which the contact goes from one edge to another: what is left is too little to be asked for.
+const HALVINGS: usize = 12;
+
 /// From one roll position to another one, with the contact that carries at each, as it is just within.
 struct Stretch {
+    pair: isize,
     ends: [Option<ContactPoint>; 2],
     rolls: [f64; 2],
 }
@@ -40,6 +44,7 @@ impl<'r> CompositeLag<'r> {
         let known: Vec<Option<(isize, Option<isize>, ContactPoint)>> = rolls.iter().map(|roll| at(*roll)).collect();
         let stretches = rolls.windows(2).zip(known.windows(2)).map(|(rolls, known)| {
             let rolls = [rolls[0], rolls[1]];
+            let pair = known.iter().flatten().map(|(pair, ..)| *pair).next().unwrap_or_default();
             let ends = match known {
                 // both ends of where a pair hands over are those of the pair that carries on this side
                 [Some((pair, _, point)), None] => [Some(point.clone()), rolling.problem.pair_at(of, *pair, rolls[1])],
@@ -51,8 +56,9 @@ impl<'r> CompositeLag<'r> {
                 }
                 _ => [None, None],
             };
-            Stretch { ends, rolls }
+            Stretch { pair, ends, rolls }
         });
+        let stretches = stretches.flat_map(|stretch| stretch.in_parts(rolling, HALVINGS));
         CompositeLag { rolling, stretches: stretches.collect() }
     }
 
@@ -68,6 +74,21 @@ impl<'r> CompositeLag<'r> {
 }
 
 impl Stretch {
+    /// In halves as long as the contact goes from one edge to another within.
+    fn in_parts(self, rolling: &Rolling, halvings: usize) -> Vec<Stretch> {
+        let Stretch { pair, ends, rolls: [begin, end] } = &self;
+        let goes_on = ends.iter().flatten().map(|point| &point.edges).is_sorted_by(|a, b| a == b);
+        if goes_on || halvings == 0 {
+            return vec![self];
+        }
+        let middle = 0.5 * (begin + end);
+        let point = rolling.problem.pair_at(rolling.looked_at(), *pair, middle);
+        let [first, last] = ends.clone();
+        let part = |ends, rolls| Stretch { pair: *pair, ends, rolls }.in_parts(rolling, halvings - 1);
+        let before = part([first, point.clone()], [*begin, middle]);
+        before.into_iter().chain(part([point, last], [middle, *end])).collect()
+    }
+
     fn lag(&self, roll: f64) -> Option<f64> {
         let [Some(first), Some(last)] = &self.ends else { return None };
         let width = self.rolls[1] - self.rolls[0];
