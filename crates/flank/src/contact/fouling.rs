@@ -16,11 +16,11 @@ use crate::project::failure::Failure;
 use crate::project::session::Session;
 use crate::project::units;
 
-/// Positions of a pitch, about.
-const LOOKS: usize = 24;
+/// Positions of a pitch.
+const LOOKS: f64 = 24.0;
 
-/// The least room of the edges of each flank beside the mate's flank, where the pair of teeth does not touch, if it is less than `most` where an edge
-/// comes nearer once it has gone away. Nothing is told of pairs that do not turn evenly, nor of teeth that end nowhere.
+/// The least room of the edges of each flank beside the mate's flank, where the pair of teeth does not touch, if an edge comes nearer there once it has
+/// gone away. Nothing is told of pairs that do not turn evenly, nor of teeth that end nowhere.
 ///
 /// # Errors
 /// If the work is cancelled.
@@ -28,7 +28,6 @@ pub(crate) fn of_flanks(
     job: &Job<'_>,
     members: &Members<'_, '_>,
     (errors, rolling): (&[f64], &Rolling),
-    most: f64,
     session: Session<'_>,
 ) -> Result<Vec<Clearance>, Failure> {
     let is_known = rolling.has_pitch && members.solids.iter().all(Option::is_some) && members.is_even(job);
@@ -45,14 +44,12 @@ pub(crate) fn of_flanks(
         let edges = edges(job, members, flank, session);
         let mate = &members.points[1 - flank];
         let side = Side { problem: &problem, rolling, edges: &edges, mate };
-        // what is more says nothing: just where an edge has left the flank there is hardly any room
-        let mut least = (most, f64::NAN);
+        let mut least: Option<(f64, f64)> = None;
         for (way, end) in &ends {
             session.check()?;
-            least = side.least((*way, end.roll), half_turn, least);
+            least = side.least([end.roll, end.roll + *way as f64 * half_turn], least);
         }
-        let (least_mm, roll) = least;
-        found.extend((least_mm < most).then(|| Clearance {
+        found.extend(least.map(|(least_mm, roll)| Clearance {
             of: members.surfaces[flank].name.clone(),
             with: members.surfaces[1 - flank].name.clone(),
             least_mm,
@@ -71,8 +68,9 @@ struct Side<'s> {
 }
 
 impl Side<'_> {
-    /// Of some edges the room at a roll position and its lag, of those that are within the mate's blank; `None` where none is.
-    fn rooms(&self, edges: &[SurfacePoint], (roll, lag): (f64, f64)) -> Option<Vec<Option<f64>>> {
+    /// Of some edges the room at a roll position, of those that are within the mate's blank; `None` where none is.
+    fn rooms(&self, edges: &[SurfacePoint], roll: f64) -> Option<Vec<Option<f64>>> {
+        let lag = self.rolling.lag_at(roll)?;
         let is_within = self.problem.within_mate(roll, lag, edges);
         if !is_within.contains(&true) {
             return None;
@@ -85,36 +83,21 @@ impl Side<'_> {
         Some(self.problem.passed(roll, lag, [edges, self.mate]).into_iter().zip(is_within).map(of_edge).collect())
     }
 
-    /// Positions from the end of a contact on, to one side and no farther than a turn of the roll goes, at which the composite lag is known.
-    fn positions(&self, (way, end): (isize, f64), turn: f64) -> impl Iterator<Item = (f64, Option<f64>)> {
-        let of = self.rolling.looked_at();
-        let spacing = of.pitch / of.steps as f64;
-        let begin = (end - self.rolling.roll_of(of, 0)) / spacing;
-        // the roll may go the other way than the steps
-        let along = way * spacing.signum() as isize;
-        let first = if along > 0 { begin.floor() as isize + 1 } else { begin.ceil() as isize - 1 };
-        let stride = (of.steps / LOOKS).max(1);
-        let steps = (0..).step_by(stride).map(move |k: isize| first + along * k);
-        let at = move |step: isize| (self.rolling.roll_of(of, step), of.carried(step).map(|carried| carried.lag));
-        steps.map(at).take_while(move |(roll, _)| (roll - end).abs() <= turn)
-    }
-
-    /// The least room on one side of the end of a contact, where it is less than one before; with its roll position.
-    fn least(&self, end: (isize, f64), turn: f64, known: (f64, f64)) -> (f64, f64) {
-        let looked: Vec<(f64, Vec<Option<f64>>)> = self
-            .positions(end, turn)
-            .map_while(|(roll, lag)| Some((roll, self.rooms(self.edges, (roll, lag?))?)))
-            .collect();
-        let rolls: Vec<f64> = looked.iter().map(|(roll, _)| *roll).collect();
+    /// The least room from the end of a contact to another roll position, where it is less than one before; with its roll position.
+    fn least(&self, [from, to]: [f64; 2], known: Option<(f64, f64)>) -> Option<(f64, f64)> {
+        let step = (to - from).signum() * self.rolling.engagement.pitch / LOOKS;
+        let count = ((to - from) / step) as usize;
+        let rolls: Vec<f64> = (1..=count).map(|k| from + k as f64 * step).collect();
+        let looked: Vec<Vec<Option<f64>>> = rolls.iter().map_while(|roll| self.rooms(self.edges, *roll)).collect();
         let mut least = known;
         for (place, edge) in self.edges.iter().enumerate() {
-            let mut rooms: Vec<Option<f64>> = looked.iter().map(|(_, rooms)| rooms[place]).collect();
+            let mut rooms: Vec<Option<f64>> = looked.iter().map(|rooms| rooms[place]).collect();
             // as far as it goes away from the flank that it has left
             let is_nearer = |pair: &[Option<f64>]| matches!(pair, [Some(a), Some(b)] if b < a);
             let Some(first) = rooms.windows(2).position(is_nearer) else { continue };
             rooms[..=first].fill(None);
-            let at = |roll: f64| self.rooms(std::slice::from_ref(edge), (roll, self.rolling.lag_at(roll)?))?[0];
-            least = least_between(&rolls, &rooms, Some(least), at).unwrap_or(least);
+            let at = |roll: f64| self.rooms(std::slice::from_ref(edge), roll)?[0];
+            least = least_between(&rolls, &rooms, least, at);
         }
         least
     }

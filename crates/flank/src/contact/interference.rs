@@ -45,7 +45,9 @@ pub(crate) fn of_spaces(
         clearances.extend(clearance(job, members, other, (errors, rolling), session));
     }
     let cuts = |room: &&Clearance| room.least_mm < REACHES_IN;
-    clearances.extend(fouling::of_flanks(job, members, (errors, rolling), REACHES_IN, session)?);
+    // beside the flank of the contact itself there is room that says nothing: just where an edge has left it
+    let fouled = fouling::of_flanks(job, members, (errors, rolling), session)?;
+    clearances.extend(fouled.iter().filter(cuts).cloned());
     let name = &members.contact.name;
     let not_done = clearances.iter().filter(cuts).map(|room| {
         let Clearance { of, with, .. } = room;
