@@ -107,7 +107,7 @@ impl Mistake<'_> {
             (_, "=") if statement == "expect" && wants(Rule::kw_near) => {
                 "say how near the value must lie, as in `near 3 mm within 1 um`"
             }
-            (_, _) if statement == "expect" && wants(Rule::kw_near) && (self.ends() || self.leads()) => {
+            (_, _) if statement == "expect" && wants(Rule::kw_near) && self.compares() => {
                 "a bound is a range, as in `in 2 mm .. 3 mm`"
             }
             (_, _) if statement == "use" && self.scan.is_name(self.found) => {
@@ -167,6 +167,12 @@ impl Mistake<'_> {
             Some((title, span, text)) => diagnostic.cure(title, span, text),
             None => diagnostic,
         })
+    }
+
+    /// Whether a comparison stands before the mistake, and nothing behind it.
+    fn compares(&self) -> bool {
+        let is_sign = |index: usize| matches!(self.scan.say(index), "<" | ">" | "<=" | ">=");
+        (self.ends() || self.leads()) && (self.range.start..self.found).any(is_sign)
     }
 
     /// `0.5 in` at the end of a line.
