@@ -111,7 +111,7 @@ pub enum Outcome {
     /// There is a root in the ranges, but it is no point of the finished work: its unknowns, position and normal are those of the
     /// surface that the tool generates.
     CutAway(CutBy),
-    /// There is a root in the ranges, but whether another surface cuts it away is not clear: see [`trim`](crate::trim).
+    /// There is a root in the ranges, but whether another surface cuts it away is not clear: see [`Trim`](crate::Trim).
     Undecided,
     /// There is a root, but one of the unknowns lies outside its range.
     Outside {
@@ -146,7 +146,7 @@ pub enum CutBy {
     /// The tool itself in another of its positions, by the piece of its surface that has this number for
     /// [`SecondaryCutting`](crate::SecondaryCutting).
     ItsToolElsewhere(usize),
-    /// Another surface, by the number that it has for [`trim`](crate::trim).
+    /// Another surface, by the number that it has for [`Trim`](crate::Trim).
     Other(usize),
     /// Nothing that is generated: the blank ends before, at this segment of its [`Outline`](crate::Outline).
     Blank(usize),
