@@ -11,6 +11,7 @@ use crate::solve::{self, blank};
 const PLACES: usize = 9;
 /// An edge is one of a flank whose points come so near to it, as a share of the way across them.
 const BESIDE: f64 = 0.3;
+
 /// Points of a flank along the segments of its outline at which it ends.
 pub(super) fn edges(job: &Job<'_>, members: &Members<'_, '_>, flank: usize, session: Session) -> Vec<SurfacePoint> {
     let (surface, Some(solid)) = (members.surfaces[flank], members.solids[flank]) else { return Vec::new() };

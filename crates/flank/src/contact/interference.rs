@@ -39,15 +39,14 @@ pub(crate) fn of_spaces(
     session: Session,
 ) -> Result<Rooms, Failure> {
     let (others, unknown) = members.beside(job, session)?;
+    let edges = [0, 1].map(|flank| edges(job, members, flank, session));
     let mut clearances = Vec::new();
     for other in &others {
         session.check()?;
-        clearances.extend(clearance(job, members, other, (errors, rolling), session));
+        clearances.extend(clearance(job, members, other, (errors, rolling), &edges));
     }
     let cuts = |room: &&Clearance| room.least_mm < REACHES_IN;
-    // beside the flank of the contact itself there is room that says nothing: just where an edge has left it
-    let fouled = fouling::of_flanks(job, members, (errors, rolling), session)?;
-    clearances.extend(fouled.iter().filter(cuts).cloned());
+    clearances.extend(fouling::of_flanks(job, members, (errors, rolling), (&edges, REACHES_IN), session)?);
     let name = &members.contact.name;
     let not_done = clearances.iter().filter(cuts).map(|room| {
         let Clearance { of, with, .. } = room;
@@ -74,11 +73,11 @@ fn clearance<'g>(
     members: &Members<'_, 'g>,
     other: &Members<'_, 'g>,
     (errors, rolling): (&[f64], &Rolling),
-    session: Session,
+    edges: &[Vec<SurfacePoint>; 2],
 ) -> Option<Clearance> {
     let of = usize::from(other.surfaces[0].name == members.surfaces[0].name);
     let flank = 1 - of;
-    let edges = edges(job, members, flank, session);
+    let edges = &edges[flank];
     let pair = other.pair(job, errors, &[]);
     let pair = if flank == 0 { pair } else { pair.swapped() };
     let problem = ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound");
@@ -91,7 +90,7 @@ fn clearance<'g>(
     let rolls: Vec<f64> = rolling.all_steps().map(|step| rolling.roll(step)).collect();
     let at_step = |step: isize| {
         let carried = rolling.engagement.carried(step);
-        carried.map_or(vec![None; edges.len()], |carried| room(&edges, rolling.roll(step), carried.lag))
+        carried.map_or(vec![None; edges.len()], |carried| room(edges, rolling.roll(step), carried.lag))
     };
     let of_steps: Vec<Vec<Option<f64>>> = rolling.all_steps().map(at_step).collect();
     let mut least: Option<(f64, f64)> = None;
