@@ -37,12 +37,12 @@ pub(crate) fn of_flanks(
     let ends = rolling.flank_ends();
     let half_turn = std::f64::consts::PI / members.turns(job, 0.5)[0].map(f64::abs).into_iter().fold(0.0, f64::max);
     let mut found = Vec::new();
-    for flank in 0..2 {
+    for (flank, edges) in edges.iter().enumerate() {
         let pair = members.pair(job, errors, &[]);
         let pair = if flank == 0 { pair } else { pair.swapped() };
         let problem = ContactProblem::new(&pair).expect("a job without errors leaves nothing unbound");
         let mate = &members.points[1 - flank];
-        let side = Side { problem: &problem, rolling, edges: &edges[flank], mate };
+        let side = Side { problem: &problem, rolling, edges, mate };
         // what is more says nothing: just where an edge has left the flank there is hardly any room
         let mut least = (most, f64::NAN);
         for (way, end) in &ends {
