@@ -547,36 +547,6 @@ fn a_new_job_brings_its_expectations() {
     }
 }
 
-/// What was worked out for the library's values, also what a job inherits of that, is left out where it does not hold; all else stays.
-#[test]
-fn a_new_job_with_other_values_keeps_what_holds() {
-    let folder = folder("test_new_values");
-    for (number, (template, set, holds, left_out)) in [
-        ("undercut_gear", "teeth=9", 0, "lowest(flank_plus.trim_line, rho) near 4.72560220014383 * module"),
-        ("undercut_gear", "module=2 mm", 2, ""),
-        ("undercut_gear_body", "teeth=9", 2, "gear.form_diameter near 9.45120440028766 * module"),
-        ("milled_gear", "helix_angle=10 deg", 2, "lower_flank near table(\"helical_gear.csv\""),
-        ("elliptical_gear", "axis_ratio=0.95", 1, "flank_plus near table(\"elliptical_gear.csv\""),
-        ("elliptical_gear_body", "axis_ratio=0.95", 1, "flank_plus near table(\"elliptical_gear.csv\""),
-        ("elliptical_gear_body", "face_width=21 mm", 5, ""),
-    ]
-    .into_iter()
-    .enumerate()
-    {
-        let out = number.to_string();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_flank"));
-        let run = command.args(["new", template, "--name", "my_gear", "--out", &out, "--set", set]);
-        let run = run.current_dir(&folder).output().expect("the binary runs");
-        let told = text(&run.stdout);
-        assert_eq!(told.contains("left out"), !left_out.is_empty(), "{template} {set}: {told}{}", text(&run.stderr));
-        assert!(told.contains(left_out), "{template} {set}: {told}");
-        let spec = told.split(['\n', ' ', ',']).nth(1).expect("what was written").to_string();
-        let run = tested(&folder, "", &[&spec, "--json"]);
-        let document: Value = serde_json::from_slice(&run.stdout).expect("JSON");
-        assert_eq!((&document["failed"], &document["passed"]), (&0.into(), &holds.into()), "{template} {set}: {told}");
-    }
-}
-
 /// A cam and two ways to sample it: one range holds the outer and the inner branch, so nothing can be said of the other one, which is whole.
 const CAM: &str = r#"machine lathe {
     axis X : linear

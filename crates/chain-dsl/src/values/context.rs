@@ -17,7 +17,7 @@ use crate::limits;
 use crate::syntax::ast;
 use crate::values::angle_product::AngleProducts;
 use crate::values::dimension::{Dimension, shown};
-use crate::values::steel_side::{SteelSide, steps};
+use crate::values::steel_side::SteelSide;
 use crate::values::table_files::Tables;
 use crate::values::value::{Constant, Value};
 
@@ -309,7 +309,7 @@ impl<'g> Context<'g> {
         self.ranged(expr, true)
     }
 
-    fn ranged(&self, expr: Expr<'g>, decides: bool) -> Result<Vec<(Expr<'g>, Interval)>, Unranged> {
+    pub(super) fn ranged(&self, expr: Expr<'g>, decides: bool) -> Result<Vec<(Expr<'g>, Interval)>, Unranged> {
         let known = |variable: Expr<'g>| {
             let index = variable.as_variable().map_or(0, VariableId::index);
             let role = self.roles[index];
@@ -338,35 +338,7 @@ impl<'g> Context<'g> {
         self.enclosed(expr, true)
     }
 
-    /// The number that an expression, which the model keeps, is instead of a finite one wherever its variables are in their ranges;
-    /// nothing where it is not known to be so.
-    pub(crate) fn nowhere(&self, expr: Expr<'g>) -> Option<f64> {
-        let range = self.enclosed(expr, false).ok()?;
-        if range.is_empty() {
-            return Some(f64::NAN);
-        }
-        let divides = !range.continuous && self.zero_divisors(expr).next().is_some();
-        (divides && !self.is_seen(expr)).then_some(f64::INFINITY)
-    }
-
-    /// Whether an expression is finite at one of some places in the ranges of its variables.
-    fn is_seen(&self, expr: Expr<'g>) -> bool {
-        const LOOKS: usize = 20;
-        let Ok(ranges) = self.ranged(expr, false) else { return true };
-        let steps = steps(ranges.len());
-        let mut values = self.values.clone();
-        (0..LOOKS).any(|look| {
-            for ((variable, range), step) in ranges.iter().zip(&steps) {
-                let share = (0.5 + look as f64 * step).fract();
-                if let Some(variable) = variable.as_variable() {
-                    values[variable.index()] = range.lo + (range.hi - range.lo) * share;
-                }
-            }
-            self.graph.evaluate(&[expr], &values)[0].is_finite()
-        })
-    }
-
-    fn enclosed(&self, expr: Expr<'g>, decides: bool) -> Result<Interval, Unranged> {
+    pub(super) fn enclosed(&self, expr: Expr<'g>, decides: bool) -> Result<Interval, Unranged> {
         let ranges = self.ranged(expr, decides)?;
         let (variables, ranges): (Vec<_>, Vec<_>) = ranges.into_iter().unzip();
         let mut out = [Interval::WHOLE];
@@ -486,31 +458,6 @@ impl<'g> Context<'g> {
                 None
             }
         }
-    }
-
-    /// Reports the value of an expression that is no number, or infinite.
-    pub(crate) fn not_finite(&mut self, value: f64, of: Option<Expr<'g>>, span: Span, what: impl fmt::Display) {
-        let (reason, help) = if value.is_nan() {
-            ("cannot be computed", "look for a root or logarithm of a negative number, an `asin` of more than 1, 0 / 0")
-        } else {
-            ("is infinite", "look for a division by zero, or a value that grows too large")
-        };
-        let divisor = of.and_then(|expr| self.zero_divisor(expr));
-        let help = divisor.map_or(help.to_string(), |divisor| format!("it is divided by `{divisor}`, which is zero"));
-        self.report(Diagnostic::new(Code::NotANumber, span, format!("{what} {reason}")).help(help));
-    }
-
-    fn zero_divisors(&self, expr: Expr<'g>) -> impl Iterator<Item = Expr<'g>> {
-        let is_zero =
-            |divisor: &Expr<'g>| matches!(self.constant_kept(*divisor), Constant::Known(value) if value == 0.0);
-        self.graph.divisors(expr).into_iter().filter(is_zero)
-    }
-
-    /// What an expression divides by that is zero, in the words of the text; nothing where that is not short.
-    fn zero_divisor(&self, expr: Expr<'g>) -> Option<String> {
-        const SHORT: usize = 12;
-        let found = self.zero_divisors(expr).next()?;
-        (found.as_constant().is_none() && self.graph.size(&[found]) <= SHORT).then(|| found.to_string())
     }
 
     /// A scalar of the wanted dimension, or `None` with the reason reported.

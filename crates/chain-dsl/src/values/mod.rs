@@ -9,6 +9,7 @@ pub(crate) mod functions;
 pub(crate) mod grids;
 pub(crate) mod implicit;
 pub(crate) mod lone;
+mod nowhere;
 pub(crate) mod segment;
 pub(crate) mod steel_side;
 pub(crate) mod table_files;

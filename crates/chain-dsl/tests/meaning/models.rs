@@ -45,6 +45,32 @@ fn a_variant_adds_replaces_and_fixes() {
     assert_eq!(names, ["bed", "slide", "work", "tip"]);
 }
 
+/// A zero divisor in a way that is not taken, and a law or a transform with a value in a small part of the ranges, are no mistakes.
+#[test]
+fn what_has_a_value_somewhere_is_kept() {
+    let of = |law: &str, transforms: &str| {
+        let text = format!(
+            "machine tilted extends lathe {{
+                frame work in bed = rotate_z(C) {transforms}
+            }}
+            job j {{
+                param starts : count = 0
+                machine m = tilted(height: 4 mm)
+                tool b = ball
+                mount b on m.slide
+                motion turn : angle in 0 deg .. 90 deg
+                drive m.C = turn
+                drive m.Z = {law}
+                surface s in m.work = envelope(b.face, over: turn)
+            }}"
+        );
+        compiled(&Graph::new(), &text);
+    };
+    of("if starts == 0 then 2 mm/rad * turn else 2 mm * turn / (1 rad * starts)", "");
+    of("2 mm/rad * turn + 1 mm * sqrt(turn / 1 deg - 89.9)", "");
+    of("2 mm/rad * turn", "rotate_x(asin(C / 1 deg + 0.99))");
+}
+
 #[test]
 fn coupled_axes_follow_through_others() {
     let text = "
